@@ -5,9 +5,10 @@ from __future__ import annotations
 import json
 import math
 import sys
+from collections.abc import Iterator
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -25,9 +26,11 @@ from cdem.cli.options import (
 from cdem.errors import CaseError, CdemError
 
 if TYPE_CHECKING:
-    from cdem.study.critical import Critical
+    from cdem.study.critical import Critical, FactorOfSafety
     from cdem.study.results_table import Table
 
+MOST_BODIES = 5
+"""Bodies of a failed trial that the end of `cdem critical` names."""
 Limits = Annotated[
     list[str] | None,
     typer.Option(
@@ -40,6 +43,21 @@ Travel = Annotated[
     str | None,
     typer.Option(
         metavar="LENGTH", help="A model that rests after more travel has failed: --travel '1 cm'."
+    ),
+]
+
+IgnoreBelow = Annotated[
+    str | None,
+    typer.Option(
+        metavar="VOLUME",
+        help="Take out bodies of less volume that move, and go on: --ignore-below '2 m3'. Default: "
+        "1e-4 of the volume of groups that are not fixed.",
+    ),
+]
+OneGroup = Annotated[
+    str | None,
+    typer.Option(
+        "--group", help="Only bodies with blocks of this group count; others are taken out."
     ),
 ]
 
@@ -57,11 +75,18 @@ def critical(
         str | None, typer.Option(metavar="PATH", help="Value of the case to vary.")
     ] = None,
     factor: Annotated[
-        bool, typer.Option("--factor", help="Vary the factor of safety of all strengths instead.")
+        bool,
+        typer.Option(
+            "--factor",
+            help="Find the factor of safety of all strengths instead: with strengths kept as joints "
+            "slip, and with the laws as written where these lose strength.",
+        ),
     ] = False,
     tolerance: Annotated[float, typer.Option(help="Width of the bracket to reach.")] = 0.01,
     limits: Limits = None,
     travel: Travel = None,
+    ignore_below: IgnoreBelow = None,
+    group: OneGroup = None,
     settings: Settings = None,
     threads: Threads = None,
     allow_code: AllowCode = False,
@@ -69,10 +94,9 @@ def critical(
 ) -> None:
     """Find the value at which a case fails, by bisection of its last, static stage.
 
-    A trial fails when a node has moved 2 % (travel) of the mean face size while the kinetic energy
-    grew, or the whole face size (far), or when it moves on at no lower rate, or finds no rest in a
-    million steps. Trials start from the last stable state, unless the parameter makes another model
-    (model.*, materials.*).
+    A trial fails when a body gains speed under an unbalanced force that does not fall, or moves by
+    the mean face size, or finds no rest in a million steps. With --factor the last stage first
+    rests with strengths a hundred times as high; trials then start from the last stable state.
 
     Writes CASE.factor.json, or CASE.PATH.json, after each trial; draws CASE[.PATH].failed.png."""
     if (parameter is None) == (not factor):
@@ -84,21 +108,65 @@ def critical(
     from cdem.case.case import Case
     from cdem.study import critical as search
     from cdem.study.criterion import Criterion
+    from cdem.whole_files import write_json
 
     case = Case.load(case_file, settings or [])
-    vary = search.parameter(parameter) if parameter else search.strength_reduction()
-    name = parameter or "factor"
-    bound = [f"most_moved={travel}"] if travel else []
-    criterion = Criterion.read([*(limits or []), *bound])
+    given = {"most_moved": travel, "ignore_below": ignore_below, "group": group}
+    bounds = [f"{key}={value}" for key, value in given.items() if value is not None]
+    criterion = Criterion.read([*(limits or []), *bounds])
     print(f"a trial {criterion.text()}", file=sys.stderr)
-    report = partial(_tell_trial, name, Path(f"{case_file.stem}.{name}.json"))
-    find = partial(search.find_critical, tolerance=tolerance, criterion=criterion, threads=threads)
-    found = find(case, vary, ends, report=report, tell=_warn)
-    _draw_failure(found, name, case_file.stem + (f".{parameter}" if parameter else ""))
-    if as_json:
-        print(json.dumps({"parameter": name} | found.as_dict(), indent=2))
+    name = parameter or "factor"
+    file = Path(f"{case_file.stem}.{name}.json")
+    same: dict[str, Any] = {
+        "tolerance": tolerance,
+        "criterion": criterion,
+        "threads": threads,
+        "tell": _warn,
+    }
+    if parameter:
+        found = search.find_critical(case, search.parameter(parameter), ends,
+                                     report=partial(_tell_trial, name, file), **same)  # fmt: skip
+        result, lines = {"parameter": name} | found.as_dict(), [_bracket(name, found)]
     else:
-        print(f"{name}: rests at {found.stable:.6g}, fails at {found.failed:.6g}")
+        factors = search.find_factor(case, ends, report=partial(_tell_factor, file), **same)
+        found, result, lines = factors.kept, factors.as_dict(), list(_factor_lines(factors))
+    write_json(file, result)
+    _draw_failure(found, name, case_file.stem + (f".{parameter}" if parameter else ""))
+    print(json.dumps(result, indent=2) if as_json else "\n".join(lines))
+
+
+def _bracket(name: str, found: Critical) -> str:
+    return f"{name}: rests at {found.stable:.6g}, fails at {found.failed:.6g}"
+
+
+def _factor_lines(found: FactorOfSafety) -> Iterator[str]:
+    """The results of a search for the factor of safety, for people."""
+    yield _bracket("factor, strengths kept", found.kept)
+    yield from _failure_lines(found.kept)
+    if found.written is None:
+        yield "no law as written loses strength: the factor is the same"
+        return
+    yield _bracket("factor, laws as written", found.written)
+    yield from _failure_lines(found.written)
+    broken = [
+        f"{100 * part:.2g} % of {name}" for name, part in found.written.broken.items() if part
+    ]
+    yield (
+        f"  {', '.join(found.may_lose)} may lose strength as written; broken at rest at "
+        f"{found.written.stable:.6g}: {', '.join(broken) or 'nothing'}"
+    )
+
+
+def _failure_lines(found: Critical) -> Iterator[str]:
+    """What fails just above the critical value, and what was too small to count."""
+    trial = next(t for t in reversed(found.trials) if t.value == found.failed)
+    for body in trial.bodies[:MOST_BODIES]:
+        yield f"  fails at {found.failed:.6g}: {body.text()}"
+    if len(trial.bodies) > MOST_BODIES:
+        yield f"  and {len(trial.bodies) - MOST_BODIES} smaller bodies"
+    if trial.chips:
+        volume = sum(body.volume for body in trial.chips)
+        yield f"  not counted (--ignore-below): {len(trial.chips)} bodies, {volume:.3g} m3 in all"
 
 
 def _warn(warnings: list[str]) -> None:
@@ -123,17 +191,30 @@ def _tell_trial(name: str, file: Path, found: Critical) -> None:
     """Print the newest trial and write all of them."""
     from cdem.whole_files import write_json
 
+    write_json(file, {"parameter": name} | found.as_dict())
+    _print_trial(name, found)
+
+
+def _tell_factor(file: Path, kind: str, found: Critical) -> None:
+    """The same of a search for the factor; the file gets its last form at the end."""
+    from cdem.whole_files import write_json
+
+    write_json(file, {"parameter": "factor", "strengths": kind} | found.as_dict())
+    _print_trial(f"{kind}: factor", found)
+
+
+def _print_trial(name: str, found: Critical) -> None:
     trial = found.trials[-1]
     low, high = sorted((found.stable, found.failed))
     verdict = "stable" if trial.stable else "fails"
     bracket = f"; between {low:.6g} and {high:.6g}" if high > low else ""
+    chips = f", {len(trial.chips)} bodies too small to count were taken out" if trial.chips else ""
     print(
-        f"{name} = {trial.value:.6g}: {verdict}: {trial.saw} ({trial.steps:,} steps, {trial.why})"
-        + bracket,
+        f"{name} = {trial.value:.6g}: {verdict}: {trial.saw} ({trial.steps:,} steps, {trial.why}"
+        f"{chips}){bracket}",
         file=sys.stderr,
         flush=True,
     )
-    write_json(file, {"parameter": name} | found.as_dict())
 
 
 def _draw_failure(found: Critical, name: str, stem: str) -> None:

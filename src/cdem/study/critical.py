@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
@@ -11,14 +11,25 @@ import numpy as np
 
 from cdem.case.case import Case
 from cdem.case.checks import SETTABLE
-from cdem.case.laws import BLOCK_LAWS, INTERFACE_LAWS, Law
-from cdem.case.softening import reduced_tables
-from cdem.case.types import Part
 from cdem.errors import CaseError
 from cdem.output.render import snapshot
+from cdem.run import stages
 from cdem.run.simulation import Simulation
+from cdem.run.state import StageState
 from cdem.study.criterion import Criterion
-from cdem.study.verdict import Seen, Verdict, rests
+from cdem.study.moving import Body, lost_cohesion
+from cdem.study.strengths import HELD, StrengthReduction, keep_strengths
+from cdem.study.verdict import (
+    LEAST_STEPS,
+    UNKNOWN,
+    Seen,
+    Verdict,
+    bring_back,
+    keep,
+    patience,
+    rests,
+    stage_rests,
+)
 
 if TYPE_CHECKING:
     from cdem.output.reader import Surface
@@ -37,8 +48,9 @@ class Trial:
         why: The behaviour with figures.
         steps: Number of steps.
         moved: Displacement of its farthest node since the first trial began, or since the start of
-            its
-            own last stage if each trial builds its model [m].
+            its own last stage if each trial builds its model [m].
+        bodies: Bodies that move where it fails, the largest first.
+        chips: Bodies too small to count, which moved and were taken out.
     """
 
     value: float
@@ -47,6 +59,13 @@ class Trial:
     why: str
     steps: int
     moved: float
+    bodies: list[Body] = field(default_factory=list)
+    chips: list[Body] = field(default_factory=list)
+
+    def as_dict(self) -> dict[str, Any]:
+        """All values, ready for JSON."""
+        bodies = {name: [b.as_dict() for b in getattr(self, name)] for name in ("bodies", "chips")}
+        return vars(self) | bodies
 
 
 @dataclass
@@ -59,6 +78,7 @@ class Critical:
         criterion: Criterion of failure.
         trials: All values tried, in order.
         body: The model at the end of the trial at `failed`.
+        broken: Broken part of the bonded area of each interface at rest at `stable` [1], by name.
     """
 
     stable: float
@@ -66,6 +86,7 @@ class Critical:
     criterion: Criterion
     trials: list[Trial] = field(default_factory=list)
     body: Surface | None = field(default=None, compare=False)
+    broken: dict[str, float] = field(default_factory=dict)
 
     @property
     def value(self) -> float:
@@ -79,7 +100,8 @@ class Critical:
             "stable": self.stable,
             "failed": self.failed,
             "criterion": self.criterion.model_dump(),
-            "trials": [vars(t) for t in self.trials],
+            "broken": self.broken,
+            "trials": [t.as_dict() for t in self.trials],
         }
 
 
@@ -114,37 +136,9 @@ def parameter(path: str) -> Apply:
     return _OneValue(path)
 
 
-def strength_reduction() -> Apply:
-    """Divide all strengths of interfaces and materials by the varied factor (tangents of angles).
-
-    Each law declares its strengths. Their values are taken from the last stage, including its own
-    settings.
-    """
-    whole: dict[str, tuple[Law, Part]] = {}
-
-    def apply(case: Case, factor: float) -> None:
-        if factor <= 0:
-            raise CaseError(f"a factor of safety must be above 0, got {factor:g}")
-        if not whole:  # the first trial: full strengths
-            whole.update(_parts_with_strengths(case))
-        for path, (law, part) in whole.items():
-            reduced = law.reduced(part, factor) | reduced_tables(part, factor)
-            for name, strength in reduced.items():
-                case.set(f"{path}.{name}", strength)
-
-    return apply
-
-
-def _parts_with_strengths(case: Case) -> Iterator[tuple[str, tuple[Law, Part]]]:
-    """Path in the case, law and a copy of every interface and material."""
-    interfaces = {"default": case.interfaces.default} | {
-        f"pairs.{i}": pair for i, pair in enumerate(case.interfaces.pairs)
-    }
-    for place, interface in interfaces.items():
-        if interface is not None:
-            yield f"interfaces.{place}", (INTERFACE_LAWS[interface.law], interface.model_copy())
-    for name, material in case.materials.items():
-        yield f"materials.{name}", (BLOCK_LAWS[material.law], material.model_copy())
+def strength_reduction(keep: bool = False) -> StrengthReduction:
+    """Divide all strengths by the varied factor, see `StrengthReduction`."""
+    return StrengthReduction(keep)
 
 
 def check_last_stage(case: Case) -> None:
@@ -166,6 +160,7 @@ def find_critical(
     threads: int | None = None,
     report: Report | None = None,
     tell: Tell | None = None,
+    first: tuple[float, float] = (1.0, WIDER),
 ) -> Critical:
     """Bisect between a value at which a case rests and one at which it fails.
 
@@ -187,6 +182,7 @@ def find_critical(
         threads: Threads of the core; None for all.
         report: Called after every trial.
         tell: Called once with the warnings of the model.
+        first: Without `between`: the first value, and the one that follows it if it rests.
 
     Raises:
         CaseError: The last stage is not static, or both ends rest or fail.
@@ -202,10 +198,11 @@ def find_critical(
     if between:
         _try_ends(between, step)
     else:
-        _widen(step)
+        _widen(step, *first)
     search.begin_bisection()
     while abs(found.stable - found.failed) > tolerance:
         step(found.value)
+    found.broken = search.broken_at_rest()
     return found
 
 
@@ -231,19 +228,82 @@ def _try_ends(between: tuple[float, float], step: Callable[[float], Trial]) -> N
         )
 
 
-def _widen(step: Callable[[float], Trial]) -> None:
-    """Try 1, then its multiples by 1.5 in one direction, until one rests and one fails."""
-    value, stable = 1.0, step(1.0).stable
-    while step(value := value * WIDER if stable else value / WIDER).stable == stable:
+def _widen(step: Callable[[float], Trial], first: float, above: float) -> None:
+    """Try a value, then others in one direction, until one rests and one fails."""
+    value, stable = first, step(first).stable
+    following = above if stable else first / WIDER
+    while step(following).stable == stable:
+        value, following = following, following * WIDER if stable else following / WIDER
         if not 1 / WIDEST < value < WIDEST:
             all_of = "come to rest" if stable else "fail"
             raise CaseError(
-                f"all factors from 1 to {value:.3g} {all_of}: check that the model can slide"
+                f"all factors from {first:.3g} to {value:.3g} {all_of}: check that the model can slide"
             )
 
 
+@dataclass
+class FactorOfSafety:
+    """Factors of safety of a case.
+
+    Attributes:
+        kept: With shear strengths kept as joints slip, as in limit equilibrium.
+        written: With the laws as written, where some lose strength; else None.
+        may_lose: Interfaces and materials that may lose strength as written.
+    """
+
+    kept: Critical
+    written: Critical | None
+    may_lose: list[str]
+
+    def as_dict(self) -> dict[str, Any]:
+        """All results, ready for JSON; those with strengths kept at the top."""
+        written = None if self.written is None else self.written.as_dict()
+        more = {"strengths": "kept", "may_lose": self.may_lose, "as_written": written}
+        return {"parameter": "factor"} | self.kept.as_dict() | more
+
+
+def find_factor(
+    case: Case,
+    between: tuple[float, float] | None = None,
+    *,
+    tolerance: float = 0.01,
+    criterion: Criterion | None = None,
+    threads: int | None = None,
+    report: Callable[[str, Critical], None] | None = None,
+    tell: Tell | None = None,
+) -> FactorOfSafety:
+    """Factor of safety with strengths kept, and with the laws as written if these lose strength.
+
+    Args:
+        case: The case; its last stage must be static.
+        between, tolerance, criterion, threads, tell: As in `find_critical`; `between` is for the
+            strengths kept.
+        report: Called after every trial with "strengths kept" or "as written", and the search.
+    """
+
+    def told(kind: str) -> Report | None:
+        return None if report is None else partial(report, kind)
+
+    same = partial(find_critical, tolerance=tolerance, criterion=criterion, threads=threads)
+    kept_case, may_lose = keep_strengths(case)
+    kept = same(
+        kept_case, strength_reduction(keep=True), between, report=told("strengths kept"), tell=tell
+    )
+    if not may_lose:
+        return FactorOfSafety(kept, None, may_lose)
+    written = same(
+        case.model_copy(deep=True), strength_reduction(), None, report=told("as written"),
+        first=(kept.stable, kept.failed),
+    )  # fmt: skip
+    return FactorOfSafety(kept, written, may_lose)
+
+
 class _Warm:
-    """Trials of one model, each from the state of the last stable trial."""
+    """Trials of one model, each from the state of the last stable trial.
+
+    All stages but the last prepare the model. Where strengths vary, the last stage then begins once,
+    with strengths a hundred times as high (`HELD`), and rests: trials only lower strengths.
+    """
 
     def __init__(
         self,
@@ -255,25 +315,76 @@ class _Warm:
     ) -> None:
         self.apply, self.criterion = apply, criterion
         self.sim = Simulation(case, threads=threads)
+        criterion.check(self.sim)
         tell(self.sim.audit.warnings)
         while self.sim.stage_index < len(case.stages) - 1:
             self.sim.run_stage(case.stages[self.sim.stage_index].name)
-        self.start = self.at_rest = _keep(self.sim)
+        self.wait: int | None = criterion.stall_steps
+        self.held: StageState | None = None
+        if isinstance(apply, StrengthReduction):
+            self.held = self._hold()
+        self.start = self.at_rest = keep(self.sim)
         self.from_where = self.sim.fields["position"].copy()
         self.bisecting = False
+
+    def _hold(self) -> StageState:
+        """Begin the last stage with strengths that hold everything, and find its rest.
+
+        Raises:
+            CaseError: It does not rest: something falls or topples whatever the strengths.
+        """
+        sim = self.sim
+        stage = self._begin(1.0)  # takes the strengths as given
+        self._give(HELD)
+        before = sim.step_count
+        stages.solve(sim, stage)
+        known = self.wait or patience(sim)
+        verdict = rests(sim, stage, self.criterion, known or UNKNOWN)
+        if not verdict.stable:
+            bodies = "".join(f"; {body.text()}" for body in verdict.bodies[:1])
+            raise CaseError(
+                f"the model does not rest even with strengths {1 / HELD:g} times as high "
+                f"({verdict.saw}: {verdict.why}{bodies}): no factor of strengths holds it"
+            )
+        self.wait = known or max(LEAST_STEPS, sim.step_count - before)
+        return stage
+
+    def _begin(self, value: float) -> StageState:
+        """Begin the last stage with a value of the search."""
+        sim = self.sim
+        sim.stage_index = len(sim.case.stages) - 1
+        stage = stages.begin(sim)
+        self._give(value)
+        return stage
+
+    def _give(self, value: float) -> None:
+        self.apply(self.sim.case, value)
+        stages.update_core(self.sim, self.sim.stage_index)
+        self.sim.core.renew_step()
 
     def begin_bisection(self) -> None:
         """Let further trials start from rest instead of the prepared state."""
         self.bisecting = True
 
+    def broken_at_rest(self) -> dict[str, float]:
+        """Broken part of the bonded area of each interface, after the last trial that came to rest."""
+        bring_back(self.sim, self.at_rest)
+        return lost_cohesion(self.sim)
+
     def attempt(self, value: float) -> Trial:
         sim = self.sim
-        _bring_back(sim, self.at_rest if self.bisecting else self.start)
+        bring_back(sim, self.at_rest if self.bisecting else self.start)
         before = sim.step_count
-        prepare = partial(self.apply, sim.case, value)
-        verdict = rests(sim, prepare, self.criterion, start=self.from_where)
+        if self.held:
+            self._give(value)
+            stage = replace(self.held, start_step=before, solved="")
+        else:
+            stage = self._begin(value)
+            self.wait = self.wait or patience(sim) or UNKNOWN
+        assert self.wait
+        verdict = rests(sim, stage, self.criterion, self.wait, self.from_where)
         if verdict.stable:
-            self.at_rest = _keep(sim)
+            self.at_rest = keep(sim)
         return _trial(value, verdict, sim.step_count - before)
 
 
@@ -294,41 +405,32 @@ class _Cold:
     def begin_bisection(self) -> None:
         """No state is carried over."""
 
+    def broken_at_rest(self) -> dict[str, float]:
+        """Nothing: the model of the last stable trial is gone."""
+        return {}
+
     def attempt(self, value: float) -> Trial:
         case = self.case.model_copy(deep=True)
         self.apply(case, value)
         sim = self.sim = Simulation(case, threads=self.threads)
+        self.criterion.check(sim)
         if self.tell:  # warnings of the first trial only; others differ by one value
             self.tell(sim.audit.warnings)
             self.tell = None
         verdict = Verdict(True, "at rest", "")
-        for index, stage in enumerate(case.stages):
-            if stage.mode == "static":
-                verdict = rests(sim, None, self.criterion, index)
+        for index, rules in enumerate(case.stages):
+            if rules.mode == "static":
+                verdict = stage_rests(sim, self.criterion, index)
                 sim.stage_index, sim.stage = index + 1, None
             else:
-                sim.run_stage(stage.name)
+                sim.run_stage(rules.name)
             if not verdict.stable:
                 if index < len(case.stages) - 1:
-                    verdict.why = f"stage {stage.name}: {verdict.why}"
+                    verdict.why = f"stage {rules.name}: {verdict.why}"
                 break
         return _trial(value, verdict, sim.step_count)
 
 
 def _trial(value: float, verdict: Verdict, steps: int) -> Trial:
-    return Trial(value, verdict.stable, verdict.saw, verdict.why, steps, verdict.moved)
-
-
-@dataclass
-class _State:
-    arrays: dict[str, np.ndarray]
-    scalars: dict[str, Any]
-
-
-def _keep(sim: Simulation) -> _State:
-    return _State({k: v.copy() for k, v in sim.core.fields().items()}, sim.core.scalars())
-
-
-def _bring_back(sim: Simulation, state: _State) -> None:
-    sim.core.restore(state.arrays, state.scalars)
-    sim.core.prepare()
+    v = verdict
+    return Trial(value, v.stable, v.saw, v.why, steps, v.moved, v.bodies, v.chips)

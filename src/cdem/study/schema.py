@@ -147,7 +147,10 @@ class CriticalSearch(Part):
     """Find the value at which each case fails, like `cdem critical`."""
 
     parameter: Name | None = Field(None, description="Path of the value to vary")
-    factor: bool = Field(False, description="Vary the factor of safety of all strengths instead")
+    factor: bool = Field(
+        False,
+        description="Vary the factor of safety of all strengths, kept as joints slip, instead",
+    )
     between: list[Any] = Field(
         min_length=2, max_length=2, description="A value that rests and one that fails; or formulas"
     )

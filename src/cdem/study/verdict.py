@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import math
 from dataclasses import dataclass, field
 from typing import Literal
 
@@ -12,14 +12,23 @@ from numpy.typing import NDArray
 from cdem.errors import UnstableError
 from cdem.run import stages
 from cdem.run.simulation import CHECK_INTERVAL, Simulation
+from cdem.run.state import StageState
 from cdem.study.criterion import Criterion
+from cdem.study.moving import Body, moving_bodies
 from cdem.units import coordinates
 
 Floats = NDArray[np.float64]
 
-LOOK = 10 * CHECK_INTERVAL
+LOOK = 5 * CHECK_INTERVAL
 """Steps between two looks at a stage."""
-
+PERIODS = 2.0
+"""Periods of the slowest elastic motion after which the unbalanced force is judged."""
+LEAST_STEPS = 4 * LOOK
+"""Steps before that at least: the farthest node is compared over halves and quarters of them."""
+UNKNOWN = 10_000
+"""The same where that motion is not known."""
+SHAKE = 0.01
+"""Part of gravity by which a model is loaded to find that period."""
 STEADY = 0.9
 """A body slides, and does not creep, if its unbalance ratio falls by less than a tenth while the
 number of steps doubles: a remaining force would keep accelerating it."""
@@ -39,85 +48,146 @@ class Verdict:
         why: The behaviour with figures. Speeds are from relaxation, which slows motion.
         moved: Displacement of the farthest node since the trial began, or from the given
             positions [m].
+        bodies: What moves, where it has failed: the largest first.
+        chips: Smaller bodies that moved, and were taken out of the model.
     """
 
     stable: bool
     saw: Seen
     why: str
     moved: float = np.nan
+    bodies: list[Body] = field(default_factory=list)
+    chips: list[Body] = field(default_factory=list)
+
+
+def patience(sim: Simulation) -> int | None:
+    """Steps after which a force that has not fallen is not that of an elastic motion.
+
+    The model is loaded by a little more gravity and solved; the displacement gives the period of the
+    slowest motion that this excites (Rayleigh's quotient), in steps with the masses of the stage.
+    Its state stays as it is.
+
+    Returns:
+        Steps, or None where no rest lies near or there is no gravity.
+    """
+    gravity = np.array(sim.case.loads.gravity, float)
+    rules = sim.case.stages[sim.stage_index]
+    assert rules.relax is not None and rules.tolerance is not None
+    if not gravity.any():
+        return None
+    state = keep(sim)
+    sim.core.set_gravity(list((1 + SHAKE) * gravity))
+    sim.core.run(1, relaxation=stages.RELAXATIONS[rules.relax])
+    force, step = sim.fields["force"].copy(), float(sim.core.scalars()["dt"])
+    mass = np.array(sim.core.array("node.relax_mass")[0]).ravel()
+    mass = mass if len(mass) == len(force) else sim.fields["mass"].copy()
+    bring_back(sim, state)
+    before = sim.fields["position"].copy()
+    rounds, _, first, left = sim.core.solve_for_rest(rules.tolerance)
+    moved = sim.fields["position"] - before
+    sim.core.set_gravity(list(gravity))
+    bring_back(sim, state)
+    energy, heavy = float((moved * force).sum()), float((mass[:, None] * moved**2).sum())
+    if not rounds or left > stages.LEAST_GAIN * first or not energy > 0 or not heavy > 0:
+        return None
+    return max(LEAST_STEPS, math.ceil(PERIODS * 2 * math.pi * math.sqrt(heavy / energy) / step))
+
+
+def stage_rests(sim: Simulation, criterion: Criterion | None = None, index: int = -1) -> Verdict:
+    """Begin a static stage, by default the last, and run it until it rests or fails.
+
+    Args:
+        sim: The simulation; stages between are left out.
+        criterion: Criterion of failure.
+        index: Index of the stage.
+    """
+    sim.stage_index = range(len(sim.case.stages))[index]
+    stage, criterion = stages.begin(sim), criterion or Criterion()
+    return rests(sim, stage, criterion, criterion.stall_steps or patience(sim) or UNKNOWN)
 
 
 def rests(
     sim: Simulation,
-    prepare: Callable[[], None] | None = None,
-    criterion: Criterion | None = None,
-    index: int = -1,
+    stage: StageState,
+    criterion: Criterion,
+    wait: int,
     start: Floats | None = None,
 ) -> Verdict:
-    """Run a static stage, by default the last, until it rests or fails by the criterion.
+    """Run a static stage that has begun until it rests or fails by the criterion.
 
     Args:
         sim: The simulation.
-        prepare: May change the case at the beginning of the stage.
+        stage: Its stage.
         criterion: Criterion of failure.
-        index: Index of the stage.
+        wait: Steps after which the unbalanced force is judged.
         start: Origin of displacements for the check of rest [m], shape (nodes, 3); None:
-            positions at the beginning of the stage.
+            present positions.
     """
-    c = criterion or Criterion()
-    sim.stage_index = range(len(sim.case.stages))[index]
-    stage = stages.begin(sim)
-    if prepare:
-        prepare()
-        stages.update_core(sim, sim.stage_index)
-        sim.core.renew_step()
-    watch = _Watch(sim, c, start)
+    c, chips = criterion, list[Body]()
+    watch = _Watch(sim, c, wait, start)
     most = sim.case.stages[sim.stage_index].max_steps or c.most_steps
-    done = 0
-    while done < most:
+    begin = sim.step_count
+    while (done := sim.step_count - begin) < most:
         try:
             outcome = sim.advance(stage, min(LOOK, most - done))
         except UnstableError as error:
-            return Verdict(False, "unstable", str(error), watch.moved())
-        done = sim.step_count - stage.start_step
+            return Verdict(False, "unstable", str(error), watch.moved(), chips=chips)
         if outcome == "converged":
-            return watch.rest()
-        if verdict := watch.look(done):
+            return watch.rest(chips)
+        verdict = watch.look()
+        if verdict is None:
+            continue
+        verdict.bodies, verdict.chips = watch.bodies(), chips
+        if not verdict.bodies or any(c.counts(sim, body) for body in verdict.bodies):
             return verdict
+        _take_out(sim, verdict.bodies)
+        chips += verdict.bodies
+        watch = _Watch(sim, c, wait, watch.begin)
     text = f"no rest in {done:,} steps, ratio {sim.core.unbalance_ratio():.2g}"
-    return Verdict(False, "undecided", text, watch.moved())
+    return Verdict(False, "undecided", text, watch.moved(), watch.bodies(), chips)
+
+
+def _take_out(sim: Simulation, bodies: list[Body]) -> None:
+    t = sim.build.topology
+    leaves = np.zeros(len(t.block_group), np.int8)
+    leaves[np.concatenate([body.members for body in bodies])] = 1
+    sim.core.take_out(leaves[t.node_block])
 
 
 @dataclass
 class _Look:
-    """One look at a stage: steps, displacement of the farthest node [faces], lowest unbalance ratio."""
+    """One look at a stage: displacement of the farthest node [faces], lowest unbalance ratio."""
 
-    steps: int = 0
     moved: float = 0.0
     least: float = np.inf
 
 
 @dataclass
 class _Watch:
-    """A stage as the criterion sees it."""
+    """A stage as the criterion sees it, from now on."""
 
     sim: Simulation
     criterion: Criterion
+    wait: int
     origin: Floats | None = None  # of reported displacements [m]
     looks: list[_Look] = field(default_factory=lambda: [_Look()])
-    half_way: float = 0.0  # kinetic energy when half of the travel was reached [J]
 
     def __post_init__(self) -> None:
         counts, arrays = self.sim.audit.counts, self.sim.build.arrays
         self.size = float(arrays["face.length"][: counts["faces"]].mean())
         self.start = self.sim.fields["position"].copy()
         self.begin = self.start if self.origin is None else self.origin
+        self.first_step = self.sim.step_count
+
+    def bodies(self) -> list[Body]:
+        """The bodies that have moved since the watch began."""
+        return moving_bodies(self.sim, self.start)
 
     def moved(self) -> float:
         """Displacement of the farthest node from the origin [m]."""
         return float(self._ways(self.begin).max())
 
-    def rest(self) -> Verdict:
+    def rest(self, chips: list[Body]) -> Verdict:
         """The verdict on a model at rest, with its displacement."""
         left = self.sim.core.unbalance_ratio()  # 0 below the round-off of the coordinates
         ways = self._ways(self.begin)
@@ -125,45 +195,72 @@ class _Watch:
         most = self.criterion.most_moved
         if most is not None and moved > most:
             text = f"{self._place(ways)}, more than {most:g} m, and rests, {ratio}"
-            return Verdict(False, "sliding", text, moved)
-        return Verdict(True, "at rest", f"{ratio}, {self._place(ways)}", moved)
+            return Verdict(
+                False, "sliding", text, moved, moving_bodies(self.sim, self.begin), chips
+            )
+        return Verdict(True, "at rest", f"{ratio}, {self._place(ways)}", moved, chips=chips)
 
     def _ways(self, start: Floats) -> Floats:
-        return np.linalg.norm(self.sim.fields["position"] - start, axis=1)
+        ways = np.linalg.norm(self.sim.fields["position"] - start, axis=1)
+        return np.where(self.sim.out[self.sim.build.topology.node_block], 0.0, ways)
 
-    def look(self, steps: int) -> Verdict | None:
-        """Check the state after a number of steps; returns a verdict if it has failed."""
-        c, last = self.criterion, self.looks[-1]
+    def look(self) -> Verdict | None:
+        """Check the present state; returns a verdict if it has failed."""
         ways = self._ways(self.start)
-        moved, kinetic = float(ways.max()) / self.size, float(self.sim.energies["kinetic"])
-        now = _Look(steps, moved, min(last.least, self.sim.core.unbalance_ratio()))
-        self.looks.append(now)
-        if last.steps == 0 or moved < 0.5 * c.travel:  # the first look includes the onset of loads
-            self.half_way = kinetic
-        elif moved > c.far or (moved > c.travel and kinetic > self.half_way):
+        moved = float(ways.max()) / self.size
+        ratio = self.sim.core.unbalance_ratio()
+        self.looks.append(_Look(moved, min(self.looks[-1].least, ratio)))
+        if moved > self.criterion.far:
             return Verdict(False, "sliding", self._text(ways), self.moved())
-        if steps >= c.stall_steps:
-            return self._goes_on(now, self._text(ways))
-        return None
+        done = self.sim.step_count - self.first_step
+        return self._goes_on(done, self._text(ways)) if done >= self.wait else None
 
-    def _goes_on(self, now: _Look, text: str) -> Verdict | None:
-        """Failed if the farthest node moved as far in the last half of all steps as in the quarter
-        before, and the unbalance ratio fell by less than half."""
-        count = len(self.looks) - 1
-        half, quarter = self.looks[count // 2], self.looks[count // 4]
-        slower = now.moved - half.moved < half.moved - quarter.moved
+    def _goes_on(self, done: int, text: str) -> Verdict | None:
+        """Failed if the farthest node gains speed and the unbalance ratio hardly falls.
+
+        In the last quarter of all steps it moved no less far than in the quarter before. Where the
+        ratio has fallen by less than a tenth in the last half, it slides, by less than half, it
+        creeps. If it creeps, or if it has not moved by `travel` in a model with bolts, which may still
+        tighten, this must be so after four times the wait and `UNKNOWN` steps.
+        """
+        last = len(self.looks) - 1
+        quarter = last // 4
+        now, later, half = (self.looks[last - k * quarter] for k in range(3))
+        slower = now.moved - later.moved < later.moved - half.moved
         if slower or now.least <= 0.5 * half.least:
             return None
         saw: Seen = "sliding" if now.least > STEADY * half.least else "creeping"
+        tightens = bool(self.sim.case.bolts) and now.moved <= self.criterion.travel
+        if (saw == "creeping" or tightens) and done < max(UNKNOWN, 4 * self.wait):
+            return None
         return Verdict(False, saw, f"{text}, ratio stays at {now.least:.2g}", self.moved())
 
     def _place(self, ways: Floats) -> str:
         farthest = int(ways.argmax())
         t = self.sim.build.topology
         group = self.sim.build.group_names[t.block_group[t.node_block[farthest]]]
-        place = coordinates(self.sim.fields["position"][farthest])
+        place = coordinates(np.round(self.sim.fields["position"][farthest], 3))
         return f"{group} has moved {ways[farthest]:.3g} m at ({place})"
 
     def _text(self, ways: Floats) -> str:
         speed = np.linalg.norm(self.sim.fields["velocity"], axis=1).max()
         return f"{self._place(ways)}, {speed:.2g} m/s"
+
+
+@dataclass
+class State:
+    """A state of the core."""
+
+    arrays: dict[str, np.ndarray]
+    scalars: dict[str, bool | int | float]
+
+
+def keep(sim: Simulation) -> State:
+    """A copy of the present state."""
+    return State({k: v.copy() for k, v in sim.core.fields().items()}, sim.core.scalars())
+
+
+def bring_back(sim: Simulation, state: State) -> None:
+    """Return to a state."""
+    sim.core.restore(state.arrays, state.scalars)
+    sim.core.prepare()

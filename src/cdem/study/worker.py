@@ -107,10 +107,13 @@ def _run(case: Case, task: dict[str, Any], folder: Path, tell: Tell) -> dict[str
 
 
 def _search(case: Case, search: dict[str, Any], tell: Tell) -> dict[str, Any]:
-    """Find the critical value like `cdem critical`."""
+    """Find the critical value like `cdem critical`; a factor is that with strengths kept."""
     from cdem.study.critical import find_critical, parameter, strength_reduction
+    from cdem.study.strengths import keep_strengths
 
-    vary = strength_reduction() if search["factor"] else parameter(search["parameter"])
+    if search["factor"]:
+        case = keep_strengths(case)[0]
+    vary = strength_reduction(keep=True) if search["factor"] else parameter(search["parameter"])
     low, high = search["between"]
     found = find_critical(
         case,

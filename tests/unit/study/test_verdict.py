@@ -5,33 +5,70 @@ from types import SimpleNamespace
 import numpy as np
 
 from cdem.study.criterion import Criterion
-from cdem.study.verdict import LOOK, _Watch
+from cdem.study.verdict import LEAST_STEPS, LOOK, UNKNOWN, _Watch
 
 
-def watch_of(looks):
-    """Verdicts on a block of faces of 1 m, of which each look sees a way [m] and a kinetic energy [J]."""
+def watch_of(looks, wait=LEAST_STEPS, bolts=()):
+    """Verdicts on a block of faces of 1 m, of which each look sees a way [m] and an unbalance ratio."""
+    ratio = [1.0]
     topology = SimpleNamespace(block_group=np.zeros(1, int), node_block=np.zeros(1, int))
     sim = SimpleNamespace(
         audit=SimpleNamespace(counts={"faces": 1}),
         build=SimpleNamespace(
             arrays={"face.length": np.ones(1)}, topology=topology, group_names=["rock"]
         ),
-        core=SimpleNamespace(unbalance_ratio=lambda: 0.1),
+        core=SimpleNamespace(unbalance_ratio=lambda: ratio[0]),
         fields={"position": np.zeros((1, 3)), "velocity": np.zeros((1, 3))},
-        energies={"kinetic": 0.0},
+        out=np.zeros(1, bool),
+        case=SimpleNamespace(bolts=bolts),
+        step_count=0,
     )
-    watch = _Watch(sim, Criterion())
-    for number, (way, kinetic) in enumerate(looks, 1):
+    watch = _Watch(sim, Criterion(), wait)
+    for number, (way, left) in enumerate(looks, 1):
+        ratio[0] = left
         sim.fields["position"] = np.array([[way, 0.0, 0.0]])
-        sim.energies["kinetic"] = kinetic
-        yield watch.look(number * LOOK)
+        sim.step_count = number * LOOK
+        verdict = watch.look()
+        yield verdict and verdict.saw
 
 
-def test_soft_rock_that_sags_far_before_the_first_look_is_not_sliding():
-    assert list(watch_of([(0.3, 10.0), (0.4, 6.0), (0.41, 0.1)])) == [None, None, None]
+def steps(count, way, ratio):
+    """Looks at a motion: way [m] and ratio as functions of the number of the look."""
+    return [(way(k), ratio(k)) for k in range(1, count + 1)]
 
 
-def test_a_body_that_gains_speed_slides():
-    verdicts = list(watch_of([(0.3, 10.0), (0.9, 40.0)]))
-    assert verdicts[0] is None
-    assert verdicts[1].saw == "sliding"
+def test_a_body_that_gains_speed_under_a_steady_force_slides():
+    """Not before four looks, nor, with bolts, before it has moved by a hundredth of a face."""
+    accelerated = steps(8, lambda k: 5e-4 * k**2, lambda k: 0.02)
+    assert list(watch_of(accelerated)) == [*3 * [None], *5 * ["sliding"]]
+    assert list(watch_of(accelerated, bolts=["rod"])) == [*4 * [None], *4 * ["sliding"]]
+
+
+def test_soft_rock_that_sags_far_is_not_sliding():
+    """In the first quarter of a period it gains speed, but its force falls as a cosine."""
+    turn = 2 * np.pi / 64  # a look
+    sag = steps(64, lambda k: 0.2 * (1 - np.cos(turn * k)), lambda k: abs(np.cos(turn * k)))
+    assert not any(watch_of(sag, wait=2 * 64 * LOOK))
+
+
+def test_a_body_that_slows_down_under_a_steady_force_is_not_sliding():
+    """Friction above its drive stops it after a constant deceleration."""
+    slowed = steps(30, lambda k: 2e-4 * k * (60 - k), lambda k: 0.02)
+    assert not any(watch_of(slowed))
+
+
+def test_an_anchor_may_tighten_while_a_body_has_hardly_moved():
+    slow = steps(UNKNOWN // LOOK, lambda k: 9e-3 * (k * LOOK / UNKNOWN) ** 2, lambda k: 1e-4)
+    seen = list(watch_of(slow, bolts=["rod"]))
+    assert not any(seen[:-1]) and seen[-1] == "sliding"
+
+
+def test_a_force_that_falls_too_slowly_creeps_in_the_end():
+    """Down to 0.62 of its value as the steps double: neither steady nor halved."""
+    creep = steps(200, lambda k: 1e-3 * k, lambda k: 0.1 * k**-0.69)
+    seen = list(watch_of(creep))
+    assert not any(seen[: UNKNOWN // LOOK - 1]) and seen[UNKNOWN // LOOK] == "creeping"
+
+
+def test_a_body_that_moves_by_a_face_slides_at_any_speed():
+    assert list(watch_of([(0.9, 0.1), (1.1, 1e-4)])) == [None, "sliding"]

@@ -3,7 +3,7 @@
 import numpy as np
 
 from cdem.output.render import snapshot
-from cdem.study.verdict import rests
+from cdem.study.verdict import stage_rests
 
 QUICK = False  # half a minute
 RADIUS, DEPTH, VOUSSOIRS = 5.0, 1.0, 13
@@ -78,12 +78,12 @@ def run(study):
     stand, fall = 1.06 * exact, 0.94 * exact
     trials = {}
     for ratio in (stand, fall):
-        trials[ratio] = rests(study.simulate(settings(ratio * RADIUS))).stable
+        trials[ratio] = stage_rests(study.simulate(settings(ratio * RADIUS))).stable
     if trials != {stand: True, fall: False}:
         raise RuntimeError(f"stands and falls as {trials}, expected at {exact}")
     while stand - fall > (0.002 if study.full else 0.005) * exact:
         ratio = 0.5 * (stand + fall)
-        if rests(study.simulate(settings(ratio * RADIUS))).stable:
+        if stage_rests(study.simulate(settings(ratio * RADIUS))).stable:
             stand = ratio
         else:
             fall = ratio
