@@ -26,6 +26,7 @@ from cdem.cli.options import (
 from cdem.errors import CaseError, CdemError
 
 if TYPE_CHECKING:
+    from cdem.case.case import Case
     from cdem.study.critical import Critical, FactorOfSafety
     from cdem.study.results_table import Table
 
@@ -106,33 +107,44 @@ def critical(
     ends = _two_numbers(between) if between else None
     allow_own_laws(case_file, allow_code)
     from cdem.case.case import Case
-    from cdem.study import critical as search
     from cdem.study.criterion import Criterion
     from cdem.whole_files import write_json
 
     case = Case.load(case_file, settings or [])
     given = {"most_moved": travel, "ignore_below": ignore_below, "group": group}
-    bounds = [f"{key}={value}" for key, value in given.items() if value is not None]
-    criterion = Criterion.read([*(limits or []), *bounds])
+    criterion = Criterion.read([*(limits or []), *(f"{k}={v}" for k, v in given.items() if v)])
     print(f"a trial {criterion.text()}", file=sys.stderr)
     name = parameter or "factor"
     file = Path(f"{case_file.stem}.{name}.json")
-    same: dict[str, Any] = {
-        "tolerance": tolerance,
-        "criterion": criterion,
-        "threads": threads,
-        "tell": _warn,
-    }
-    if parameter:
-        found = search.find_critical(case, search.parameter(parameter), ends,
-                                     report=partial(_tell_trial, name, file), **same)  # fmt: skip
-        result, lines = {"parameter": name} | found.as_dict(), [_bracket(name, found)]
-    else:
-        factors = search.find_factor(case, ends, report=partial(_tell_factor, file), **same)
-        found, result, lines = factors.kept, factors.as_dict(), list(_factor_lines(factors))
+    same: dict[str, Any] = {"tolerance": tolerance, "criterion": criterion, "threads": threads}
+    find = partial(_find_value, parameter) if parameter else _find_factor
+    found, result, lines = find(case, ends, file, same)
     write_json(file, result)
     _draw_failure(found, name, case_file.stem + (f".{parameter}" if parameter else ""))
     print(json.dumps(result, indent=2) if as_json else "\n".join(lines))
+
+
+Found = tuple["Critical", dict[str, Any], list[str]]
+"""A search, all its results, and lines for people."""
+
+
+def _find_value(
+    name: str, case: Case, ends: tuple[float, float] | None, file: Path, same: dict[str, Any]
+) -> Found:
+    from cdem.study.critical import find_critical, parameter
+
+    report = partial(_tell_trial, name, file)
+    found = find_critical(case, parameter(name), ends, tell=_warn, report=report, **same)
+    return found, {"parameter": name} | found.as_dict(), [_bracket(name, found)]
+
+
+def _find_factor(
+    case: Case, ends: tuple[float, float] | None, file: Path, same: dict[str, Any]
+) -> Found:
+    from cdem.study.critical import find_factor
+
+    found = find_factor(case, ends, tell=_warn, report=partial(_tell_factor, file), **same)
+    return found.kept, found.as_dict(), list(_factor_lines(found))
 
 
 def _bracket(name: str, found: Critical) -> str:
