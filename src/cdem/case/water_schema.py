@@ -80,8 +80,8 @@ class WaterField(Timed):
     wet: Literal["auto", "always", "broken", "never"] = Field(
         "auto",
         description="Pressure in joints: always, once their bonds are broken, or never; auto: "
-        "always for "
-        "joints without strength or beside rock with pores (biot), else broken",
+        "always in sets of joints, in interfaces with a name, without strength or beside rock with "
+        "pores (biot), else broken",
     )
     aperture: Annotated[float, Quantity("m", at_least=0)] | None = Field(
         None,

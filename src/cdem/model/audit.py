@@ -24,7 +24,7 @@ from cdem.model.model_warnings import crowded_edges, idle_bonds, uneven_tiles, u
 from cdem.model.options import pairs_loose_joints
 from cdem.model.ruling_step import remedy, ruling_step
 from cdem.model.slips import slips
-from cdem.model.wetted import dry_bonds, idle_water
+from cdem.model.wetted import idle_water, wet_bonds
 
 SOFT = 30.0
 """Compliance of the interfaces, in the softest direction, above which the audit warns [%]."""
@@ -211,7 +211,7 @@ class Audit:
         out += uneven_tiles(b)
         out += unlike_sides(b)
         out += idle_water(b, self.modules["water"])
-        out += dry_bonds(b, {row["joint"] for row in self.interfaces if row["joint"]})
+        out += wet_bonds(b, {row["joint"] for row in self.interfaces if row["joint"]})
         unheld = self._unheld_blocks()
         out += slips(b, self._threads, unheld)
         if any(s.mode == "static" for s in b.case.stages):

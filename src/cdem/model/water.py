@@ -130,7 +130,8 @@ def _joints(parts: Parts, biot: Floats, tables: WaterTables) -> _Faces:
     interface = parts.interface_of[kinds[0], kinds[1]]
     groups = t.face_group[face], t.face_group[mate]
     # for each mate: its joint's field, and whether bonds keep it dry
-    rows = np.stack([interface, *groups], axis=1)
+    named = (t.face_kind[face] >= len(names)).astype(interface.dtype)  # by a set of joints
+    rows = np.stack([interface, *groups, named], axis=1)
     unique, which = np.unique(rows, axis=0, return_inverse=True)
     found = [_of_joint(parts, biot, tables, row.tolist()) for row in unique]
     field = np.array([f for f, _ in found], np.int32)[which.ravel()] if found else face
@@ -162,8 +163,13 @@ def _middles(t: Topology) -> Floats:
 
 
 def _of_joint(parts: Parts, biot: Floats, tables: WaterTables, row: list[int]) -> tuple[int, bool]:
-    """Field of a joint with this interface between two groups, and whether it is wet while bonded."""
-    interface, a, b = row
+    """Field of a joint, and whether it is wet while bonded.
+
+    Args:
+        parts, biot, tables: Of the model.
+        row: Its interface, the groups of its sides, and whether a set of joints made it.
+    """
+    interface, a, b, of_set = row
     pairs = parts.case.interfaces.pairs
     name = pairs[interface].name if 0 <= interface < len(pairs) else None
     field = tables.in_joint([parts.names[a], parts.names[b]], name)
@@ -172,7 +178,8 @@ def _of_joint(parts: Parts, biot: Floats, tables: WaterTables, row: list[int]) -
     if wet == "auto":
         law = parts.laws[interface] if interface >= 0 else None
         strong = law is not None and INTERFACE_LAWS[law.law].bonds(law)
-        wet = "broken" if strong and not (biot[a] or biot[b]) else "always"
+        known = of_set or name is not None or biot[a] or biot[b]
+        wet = "broken" if strong and not known else "always"
     return _unless_never(tables, field), wet == "always"
 
 

@@ -106,8 +106,8 @@ def idle_water(build: Built, water: dict[str, Any] | None) -> list[str]:
     ]
 
 
-def dry_bonds(build: Built, bonded: set[str]) -> list[str]:
-    """A warning if water lies at bonded joints, which stay dry until their bonds break.
+def wet_bonds(build: Built, bonded: set[str]) -> list[str]:
+    """A warning if water presses in bonded joints by the default of `wet`.
 
     Args:
         build: The model.
@@ -116,12 +116,10 @@ def dry_bonds(build: Built, bonded: set[str]) -> list[str]:
     case = build.case
     if case.water is None or not bonded or any(rock.biot for rock in case.materials.values()):
         return []
-    if not any(
-        "wet" not in water.model_fields_set for water in case.water.fields
-    ):  # auto by default
+    if all("wet" in water.model_fields_set for water in case.water.fields):
         return []
     return [
-        f"{case.where('water')}: water: no water presses in {', '.join(sorted(bonded))} until bonds "
-        "break (wet: auto); for water in these joints write wet: always, else confirm with wet: "
-        "auto"
+        f"{case.where('water')}: water: water under the table presses in {', '.join(sorted(bonded))}, "
+        "bonded or not (wet: auto); for joints that are dry until bonds break write wet: broken, "
+        "else confirm with wet: auto"
     ]
