@@ -2,6 +2,7 @@
 
 import json
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -362,3 +363,46 @@ def test_a_chip_counts_where_none_is_ignored():
         CaseError, match="--group chp: no such group in the model; it has: block, bed, chip"
     ):
         find_factor(slope_with_a_chip(), criterion=Criterion(group="chp"), threads=1)
+
+
+def test_a_page_for_a_client(tmp_path, monkeypatch):
+    """It has both factors, the body, strengths, actions, warnings and a picture, and loads nothing."""
+    monkeypatch.chdir(tmp_path)
+    text = WEDGE + 'title: "Wedge <A & B>"\nwater: {fields: [{name: table, level: 2}]}\n'
+    Path("wedge.yaml").write_text(text)
+    words = [
+        "critical",
+        "wedge.yaml",
+        "--factor",
+        "--tolerance",
+        "0.2",
+        "--threads",
+        "1",
+        "--report",
+    ]
+    done = CliRunner().invoke(app, words)
+    assert done.exit_code == 0, done.output
+    page = Path("wedge.factor.html").read_text()
+    assert "Wedge &lt;A &amp; B&gt;" in page and "<A & B>" not in page
+    for part in (
+        "kept as joints slip",
+        "progressive failure: A, B may lose strength",
+        "1 block of rock, 489.8 m3",
+        "friction_angle 25 deg, cohesion 3e+04 Pa",
+        "water.fields: {name: table, level: 2.0}",
+        "loads.supports: {box:",
+        "bonded or not (wet: auto)",
+        "fails, sliding",
+        "data:image/png;base64,",
+        f"cdem {cdem.__version__}",
+        "bonded pairs",
+    ):
+        assert part in page, part
+    assert "http" not in page.replace("http-equiv", "") and "<script" not in page
+    found = json.loads(Path("wedge.factor.json").read_text())
+    assert found["as_written"]["value"] < found["value"]
+    assert "factor, strengths kept: rests at" in done.stdout
+    refused = CliRunner().invoke(
+        app, [*words[:2], "--parameter", "loads.gravity.2", "--between", "-9", "-20", "--report"]
+    )
+    assert refused.exit_code == 2 and "--report goes with --factor" in refused.output

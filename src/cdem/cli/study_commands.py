@@ -26,6 +26,9 @@ from cdem.cli.options import (
 from cdem.errors import CaseError, CdemError
 
 if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
     from cdem.case.case import Case
     from cdem.study.critical import Critical, FactorOfSafety
     from cdem.study.results_table import Table
@@ -54,6 +57,10 @@ IgnoreBelow = Annotated[
         help="Take out bodies of less volume that move, and go on: --ignore-below '2 m3'. Default: "
         "1e-4 of the volume of groups that are not fixed.",
     ),
+]
+ReportPage = Annotated[
+    bool,
+    typer.Option("--report", help="With --factor: write a page for a client, CASE.factor.html."),
 ]
 OneGroup = Annotated[
     str | None,
@@ -88,6 +95,7 @@ def critical(
     travel: Travel = None,
     ignore_below: IgnoreBelow = None,
     group: OneGroup = None,
+    report: ReportPage = False,
     settings: Settings = None,
     threads: Threads = None,
     allow_code: AllowCode = False,
@@ -104,28 +112,28 @@ def critical(
         raise typer.BadParameter("give either --parameter PATH or --factor")
     if parameter and not between:
         raise typer.BadParameter("--parameter needs --between: a value that rests, one that fails")
+    if report and not factor:
+        raise typer.BadParameter("--report goes with --factor")
     ends = _two_numbers(between) if between else None
     allow_own_laws(case_file, allow_code)
     from cdem.case.case import Case
     from cdem.study.criterion import Criterion
     from cdem.whole_files import write_json
 
+    file = Path(f"{case_file.stem}.{parameter or 'factor'}.json")
     case = Case.load(case_file, settings or [])
     given = {"most_moved": travel, "ignore_below": ignore_below, "group": group}
     criterion = Criterion.read([*(limits or []), *(f"{k}={v}" for k, v in given.items() if v)])
     print(f"a trial {criterion.text()}", file=sys.stderr)
-    name = parameter or "factor"
-    file = Path(f"{case_file.stem}.{name}.json")
     same: dict[str, Any] = {"tolerance": tolerance, "criterion": criterion, "threads": threads}
-    find = partial(_find_value, parameter) if parameter else _find_factor
-    found, result, lines = find(case, ends, file, same)
+    find = partial(_find_value, parameter) if parameter else partial(_find_factor, report)
+    result, lines = find(case, ends, file, same)
     write_json(file, result)
-    _draw_failure(found, name, case_file.stem + (f".{parameter}" if parameter else ""))
     print(json.dumps(result, indent=2) if as_json else "\n".join(lines))
 
 
-Found = tuple["Critical", dict[str, Any], list[str]]
-"""A search, all its results, and lines for people."""
+Found = tuple[dict[str, Any], list[str]]
+"""All results of a search, and lines for people."""
 
 
 def _find_value(
@@ -135,16 +143,23 @@ def _find_value(
 
     report = partial(_tell_trial, name, file)
     found = find_critical(case, parameter(name), ends, tell=_warn, report=report, **same)
-    return found, {"parameter": name} | found.as_dict(), [_bracket(name, found)]
+    _draw_failure(found, name, file.with_suffix(".failed.png"))
+    return {"parameter": name} | found.as_dict(), [_bracket(name, found)]
 
 
 def _find_factor(
-    case: Case, ends: tuple[float, float] | None, file: Path, same: dict[str, Any]
+    page: bool, case: Case, ends: tuple[float, float] | None, file: Path, same: dict[str, Any]
 ) -> Found:
     from cdem.study.critical import find_factor
 
     found = find_factor(case, ends, tell=_warn, report=partial(_tell_factor, file), **same)
-    return found.kept, found.as_dict(), list(_factor_lines(found))
+    image = _draw_failure(found.kept, "factor", file.with_name(f"{file.stem[:-7]}.failed.png"))
+    if page:
+        from cdem.study.safety_page import write_safety_page
+
+        write_safety_page(file.with_suffix(".html"), case, found, image)
+        print(f"page for a client: {file.with_suffix('.html')}", file=sys.stderr)
+    return found.as_dict(), list(_factor_lines(found))
 
 
 def _bracket(name: str, found: Critical) -> str:
@@ -171,7 +186,7 @@ def _factor_lines(found: FactorOfSafety) -> Iterator[str]:
 
 def _failure_lines(found: Critical) -> Iterator[str]:
     """What fails just above the critical value, and what was too small to count."""
-    trial = next(t for t in reversed(found.trials) if t.value == found.failed)
+    trial = found.trial_that_failed
     for body in trial.bodies[:MOST_BODIES]:
         yield f"  fails at {found.failed:.6g}: {body.text()}"
     if len(trial.bodies) > MOST_BODIES:
@@ -229,16 +244,19 @@ def _print_trial(name: str, found: Critical) -> None:
     )
 
 
-def _draw_failure(found: Critical, name: str, stem: str) -> None:
+def _draw_failure(found: Critical, name: str, file: Path) -> NDArray[np.uint8] | None:
+    """Draw the failed model into a file; the picture, or None where there can be none."""
     from cdem.output.render import picture, write_image
 
-    file = Path(f"{stem}.failed.png")
     assert found.body is not None  # a search ends with a trial that failed
     try:
-        write_image(file, picture([found.body], "displacement", [f"{name} = {found.failed:.6g}"]))
-        print(f"picture of the failed model: {file}", file=sys.stderr)
+        image = picture([found.body], "displacement", [f"{name} = {found.failed:.6g}"])
+        write_image(file, image)
     except CdemError as error:
         print(f"no picture of the failure: {error}", file=sys.stderr)
+        return None
+    print(f"picture of the failed model: {file}", file=sys.stderr)
+    return image
 
 
 def sweep(

@@ -32,6 +32,7 @@ from cdem.study.verdict import (
 )
 
 if TYPE_CHECKING:
+    from cdem.model.audit import Audit
     from cdem.output.reader import Surface
 
 Apply = Callable[[Case, float], None]
@@ -79,6 +80,7 @@ class Critical:
         trials: All values tried, in order.
         body: The model at the end of the trial at `failed`.
         broken: Broken part of the bonded area of each interface at rest at `stable` [1], by name.
+        audit: The report on the model.
     """
 
     stable: float
@@ -87,6 +89,12 @@ class Critical:
     trials: list[Trial] = field(default_factory=list)
     body: Surface | None = field(default=None, compare=False)
     broken: dict[str, float] = field(default_factory=dict)
+    audit: Audit | None = field(default=None, compare=False)
+
+    @property
+    def trial_that_failed(self) -> Trial:
+        """The trial at `failed`."""
+        return next(t for t in reversed(self.trials) if t.value == self.failed)
 
     @property
     def value(self) -> float:
@@ -202,7 +210,7 @@ def find_critical(
     search.begin_bisection()
     while abs(found.stable - found.failed) > tolerance:
         step(found.value)
-    found.broken = search.broken_at_rest()
+    found.broken, found.audit = search.broken_at_rest(), search.sim.audit
     return found
 
 
