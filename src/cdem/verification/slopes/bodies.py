@@ -74,8 +74,8 @@ def pushed(name: str, *, courses: int, friction: float, beside: float, quick: bo
 
 
 def stepped(name: str, friction: float, cohesion: float, quick: bool = False) -> Slope:
-    """A body on five treads of 25 degrees; the vertical risers between them open."""
-    dip, tread, riser, count, thick, width = 25.0, 4.0, 1.5, 5, 6.0, 3.0
+    """A body on five treads of 25 degrees; the vertical risers between them stand open by 5 cm."""
+    dip, tread, riser, count, thick, width, gap = 25.0, 4.0, 1.5, 5, 6.0, 3.0, 0.05
     fall = tread * tan(dip)
     top = count * (fall + riser) - riser + thick
     blocks, weight = [], 0.0
@@ -83,7 +83,8 @@ def stepped(name: str, friction: float, cohesion: float, quick: bool = False) ->
         right, low = -n * tread, n * (fall + riser)
         foot = [(right, low), (right - tread, low + fall)]
         body = [*foot, (right - tread, low + fall + thick), (right, low + thick)]
-        bed = [(right, -3.0), (right - tread, -3.0), foot[1], foot[0]]
+        edge = right - gap
+        bed = [(edge, -3.0), (right - tread, -3.0), foot[1], (edge, low + gap * tan(dip))]
         blocks += [{"group": "slide", "polyhedron": section(body, width)},
                    {"group": "bed", "polyhedron": section(bed, width)}]  # fmt: skip
         weight += UNIT * tread * thick
@@ -94,7 +95,7 @@ def stepped(name: str, friction: float, cohesion: float, quick: bool = False) ->
                   groups={"bed": FIXED})  # fmt: skip
     b = np.radians(dip)
     factor = tan(friction) / tan(dip)
-    factor += cohesion * count * tread / np.cos(b) / (weight * np.sin(b))
+    factor += cohesion * count * (tread - gap) / np.cos(b) / (weight * np.sin(b))
     return Slope(name, top, case, float(factor), 0.1, quick)
 
 

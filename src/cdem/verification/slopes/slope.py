@@ -3,10 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from copy import deepcopy
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
+import meshio
 import numpy as np
+
+from cdem.case.case import Case
 
 GRAVITY = 9.81  # [m/s2]
 Points = Sequence[tuple[float, float]]
@@ -23,6 +28,7 @@ class Slope:
         factor: Factor of safety, or the two edges of the published interval.
         within: Largest error that passes.
         quick: Whether it is run by default.
+        mesh: Mesh of the case, or None if the case makes its blocks.
     """
 
     name: str
@@ -31,6 +37,15 @@ class Slope:
     factor: float | tuple[float, float]
     within: float = 0.05
     quick: bool = False
+    mesh: meshio.Mesh | None = None
+
+    def load(self, folder: Path) -> Case:
+        """The case, with its mesh written to a folder."""
+        data = deepcopy(self.case)
+        if self.mesh is not None:
+            data["model"]["mesh"] = str(folder / "slope.msh")
+            meshio.write(folder / "slope.msh", self.mesh, "gmsh22", binary=False)
+        return Case.from_dict(data)
 
     def nearest(self, found: float) -> float:
         """The factor of safety, or the value in its interval nearest to the one found."""
@@ -66,11 +81,12 @@ def static(
 ) -> dict[str, Any]:  # fmt: skip
     """A case of one static stage; groups that `more` does not name are of the one material."""
     named = {block["group"]: {"material": "rock"} for block in model.get("blocks", [])}
+    materials = {"rock": material} if material else {}
     loads = {"gravity": [0, 0, -GRAVITY], "supports": supports} | more.pop("loads", {})
     return {
         "title": title,
         "model": model,
-        "materials": {"rock": material},
+        "materials": materials,
         "groups": named | more.pop("groups", {}),
         "interfaces": {"default": {"friction_angle": 30}, "pairs": pairs} | more.pop("interfaces", {}),
         "loads": loads,
