@@ -17,17 +17,26 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Soil:
-    """A Mohr-Coulomb material: unit weight [N/m3], cohesion [Pa], friction angle [deg]."""
+    """A Mohr-Coulomb material.
+
+    Attributes:
+        unit: Unit weight [N/m3].
+        cohesion: [Pa].
+        friction: Angle [deg].
+        cracks: Whether it has no tensile strength.
+    """
 
     unit: float
     cohesion: float
     friction: float
+    cracks: bool = False
 
     def material(self) -> dict[str, Any]:
         """As an entry of `materials`; it does not dilate."""
         return {"law": "mohr-coulomb", "density": self.unit / GRAVITY, "young_modulus": "1 GPa",
                 "poisson_ratio": 0.3, "cohesion": self.cohesion,
-                "friction_angle": self.friction}  # fmt: skip
+                "friction_angle": self.friction} | (
+                    {"tensile_strength": 0.0} if self.cracks else {})  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -128,7 +137,9 @@ def soil() -> list[Slope]:
     return [
         slope("soil, 2:1 (Griffiths & Lane 1999, example 1)", Profile(10, 20, 12),
               {"soil": Soil(20e3, 10e3, 20)}, (1.38, 1.40)),
-        slope("soil (ACADS 1a)", ACADS, {"soil": Soil(20e3, 3e3, 19.6)}, (0.99, 1.00)),
+        slope("soil (ACADS 1a)", ACADS, {"soil": Soil(20e3, 3e3, 19.6)}, (0.985, 1.00)),
+        slope("soil, tension crack (ACADS 1b)", ACADS, {"soil": Soil(20e3, 32e3, 10, cracks=True)},
+              (1.65, 1.70)),
         slope("soil, three layers (ACADS 1c)", ACADS,
               {"first": Soil(19.5e3, 0.0, 38), "second": Soil(19.5e3, 5.3e3, 23),
                "third": Soil(19.5e3, 7.2e3, 20)}, 1.39, soil_at=three_soils),
