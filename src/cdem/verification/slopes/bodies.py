@@ -198,6 +198,26 @@ def columns(name: str, friction: float, support: float = 0.0) -> Slope:
     return Slope(name, 92.5, case, root(balance, 0.5, 2.0), 0.1)
 
 
+def flexural(name: str) -> Slope:
+    """A slab that leans out of the slope by d and breaks at its foot, as a beam.
+
+    Tensile strength / F = 6 M / b^2 - N / b, with M = W sin(d) L / 2 and N = W cos(d) (Aydan &
+    Kawamoto 1992, for a single slab). Corner bonds of n cells bear 1 + 2 / n^2 of it.
+    """
+    lean, long, thick, width, strength, cells = np.radians(20.0), 10.0, 2.0, 1.0, 1.5e6, 20
+    blocks: list[dict[str, Any]] = [
+        {"group": "slab", "box": {"size": [thick, width, long], "divisions": [cells, 1, 6]}},
+        {"group": "bed", "box": {"size": [thick, width, 2]}, "translate": [0, 0, -2]},
+    ]
+    bond = {"cohesion": 4 * strength, "tensile_strength": strength,
+            "stiffness_n": "1 GPa/m", "stiffness_s": "1 GPa/m"}  # fmt: skip
+    case = static(name, {"blocks": blocks}, [pair("slab", "bed", 35, **bond)], [sides(width)],
+                  rock(UNIT), groups={"bed": FIXED},
+                  loads={"gravity": [GRAVITY * np.sin(lean), 0, -GRAVITY * np.cos(lean)]})  # fmt: skip
+    stress = UNIT * long * (3 * long / thick * np.sin(lean) - np.cos(lean))
+    return Slope(name, long, case, float(strength / stress), 0.1)
+
+
 def bodies() -> list[Slope]:
     """All of them."""
     return [
@@ -208,6 +228,7 @@ def bodies() -> list[Slope]:
         bridged("plane, a fifth of it rock bridges", 0.2, quick=True),
         three_sets("three joint sets", 30.0),
         roof("roof wedge, anchored", quick=True),
+        flexural("flexural toppling of a slab"),
         columns("block toppling, 16 columns", 42.0),
         columns("block toppling, support at the toe", 38.15, 2013e3),
     ]

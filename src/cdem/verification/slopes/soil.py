@@ -143,6 +143,6 @@ def soil() -> list[Slope]:
         slope("soil, three layers (ACADS 1c)", ACADS,
               {"first": Soil(19.5e3, 0.0, 38), "second": Soil(19.5e3, 5.3e3, 23),
                "third": Soil(19.5e3, 7.2e3, 20)}, 1.39, soil_at=three_soils),
-        slope("vertical cut in clay", Profile(5, 0, 5, 5, 2.5), {"soil": Soil(20e3, 40e3, 0)},
-              (3.77 * 0.4, 3.83 * 0.4)),
+        slope("vertical cut in clay", Profile(5, 0, 5, 1.25, 1.25), {"soil": Soil(20e3, 40e3, 0)},
+              (3.77 * 0.4, 3.83 * 0.4), rows=32),
     ]  # fmt: skip
