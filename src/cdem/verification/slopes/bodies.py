@@ -144,21 +144,21 @@ def roof(name: str, quick: bool = False) -> Slope:
     Both faces lean by a from the vertical and slide at the limit: 2 H tan(phi_F - a) = W - T,
     tan(phi_F) = tan(phi) / F (Goodman 1989, chapter 8; Brady & Brown 2004, section 8.5).
     """
-    lean, friction, high, top, width = 20.0, 38.0, 3.0, 1.0, 2.0
-    thrust, pull = 600e3, 100e3  # per metre of roof [N/m]
+    lean, friction, high, top, width = 20.0, 38.0, 5.0, 1.0, 2.0
+    thrust, pull = 1.2e6, 250e3  # per metre of roof [N/m]
     low = top + high * tan(lean)
     wedge = [(-low, 0.0), (low, 0.0), (top, high), (-top, high)]
     right = [(low, 0.0), (low + 3, 0.0), (low + 3, high), (top, high)]
     left = [(-x, z) for x, z in right]
     blocks = [{"group": g, "polyhedron": section(p, width)}
               for g, p in (("wedge", wedge), ("left", left), ("right", right))]  # fmt: skip
-    blocks.append({"group": "roof", "box": {"size": [2 * low + 6, width, 3]},
+    blocks.append({"group": "roof", "box": {"size": [2 * low + 6, width, 4]},
                    "translate": [-low - 3, 0, high]})  # fmt: skip
     press = {"surface": {"group": "right", "normal": [1, 0, 0]},
              "traction": [-thrust / high, 0, 0]}  # fmt: skip
     bar = {"area": "500 mm2", "young_modulus": "200 GPa", "yield_force": pull * width}
     bolt = {"name": "anchor", "type": "bar", "plate": True, "anchor": True, "pretension": pull * width,
-            "points": [[0.01, width / 2, 0], [0.01, width / 2, high + 2]]}  # fmt: skip
+            "points": [[0.01, width / 2, 0], [0.01, width / 2, high + 3]]}  # fmt: skip
     pairs = [pair("wedge", "left", friction), pair("wedge", "right", friction)]
     case = static(name, {"blocks": blocks}, pairs, [sides(width)], rock(UNIT),
                   groups={"left": FIXED, "roof": FIXED,

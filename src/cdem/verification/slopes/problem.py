@@ -1,6 +1,7 @@
 """Slopes: 28 factors of safety against closed forms and published intervals."""
 
 import tempfile
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -8,6 +9,7 @@ import numpy as np
 from cdem.study.critical import find_critical, strength_reduction
 from cdem.verification.slopes.bodies import bodies
 from cdem.verification.slopes.finer import finer, stiffer
+from cdem.verification.slopes.held import held
 from cdem.verification.slopes.planes import planes
 from cdem.verification.slopes.soil import soil
 from cdem.verification.slopes.wedges import wedges
@@ -34,7 +36,7 @@ def theory(name):
 def search(study, slope):
     """What `cdem critical --factor` finds with all its defaults."""
     with tempfile.TemporaryDirectory() as folder:
-        case = slope.load(Path(folder))
+        case = replace(slope, case=held(slope.case)).load(Path(folder))
         return find_critical(case, strength_reduction(), None, tolerance=0.01, threads=study.threads)
 
 

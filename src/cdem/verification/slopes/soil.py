@@ -96,7 +96,7 @@ class Profile:
 
 def slope(
     name: str, profile: Profile, soils: Mapping[str, Soil], factor: float | tuple[float, float], *,
-    rows: int = 16, soil_at: Callable[[Floats], list[str]] | None = None, quick: bool = False,
+    rows: int = 12, soil_at: Callable[[Floats], list[str]] | None = None, quick: bool = False,
 ) -> Slope:  # fmt: skip
     """A slope on a rough base, between smooth ends."""
     width, far = profile.height / rows, 1e4
@@ -136,7 +136,7 @@ def soil() -> list[Slope]:
     """All of them."""
     return [
         slope("soil, 2:1 (Griffiths & Lane 1999, example 1)", Profile(10, 20, 12),
-              {"soil": Soil(20e3, 10e3, 20)}, (1.38, 1.40)),
+              {"soil": Soil(20e3, 10e3, 20)}, (1.38, 1.40), rows=16),
         slope("soil (ACADS 1a)", ACADS, {"soil": Soil(20e3, 3e3, 19.6)}, (0.985, 1.00)),
         slope("soil, tension crack (ACADS 1b)", ACADS, {"soil": Soil(20e3, 32e3, 10, cracks=True)},
               (1.65, 1.70)),
