@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -28,7 +29,9 @@ def pair(one: str, other: str, friction: float, **more: Any) -> dict[str, Any]:
     return {"name": f"{one}_{other}", "between": [one, other], "friction_angle": friction} | more
 
 
-def pushed(name: str, *, courses: int, friction: float, beside: float, quick: bool = False) -> Slope:
+def pushed(
+    name: str, *, courses: int, friction: float, beside: float, quick: bool = False
+) -> Slope:
     """A block on a plane of 40 degrees leans on a buttress, or on a wall of blocks, on the flat.
 
     Both slide at the limit, the block down the buttress too. With t = tan(phi) / F on the plane and
@@ -46,7 +49,12 @@ def pushed(name: str, *, courses: int, friction: float, beside: float, quick: bo
     """
     dip, step, high, wide, width = 40.0, 1.0, 10.0, 14.0, 4.0
     length = (high - step) / tan(dip)
-    bed = [(0.0, -2.0), (0.0, step), (-length - 2, step + (length + 2) * tan(dip)), (-length - 2, -2.0)]
+    bed = [
+        (0.0, -2.0),
+        (0.0, step),
+        (-length - 2, step + (length + 2) * tan(dip)),
+        (-length - 2, -2.0),
+    ]
     active = [(0.0, step), (0.0, high), (-length, high)]
     blocks = [{"group": "bed", "polyhedron": section(bed, width)},
               {"group": "bed", "box": {"size": [wide + 6, width, 2]}, "translate": [0, 0, -2]},
@@ -56,10 +64,14 @@ def pushed(name: str, *, courses: int, friction: float, beside: float, quick: bo
         ends = [0.0, wide] if courses == 1 else [0.0, wide / 2, wide]
         if course % 2:
             ends = [0.0, half, wide - half, wide]
-        for left, right in zip(ends[:-1], ends[1:], strict=True):
+        for left, right in pairwise(ends):
             box = {"size": [right - left, width, rise]}
             blocks.append({"group": "wall", "box": box, "translate": [left, 0, course * rise]})
-    pairs = [pair("block", "bed", friction), pair("wall", "bed", friction), pair("block", "wall", beside)]
+    pairs = [
+        pair("block", "bed", friction),
+        pair("wall", "bed", friction),
+        pair("block", "wall", beside),
+    ]
     case = static(name, {"blocks": blocks}, pairs, [sides(width)], rock(UNIT), groups={"bed": FIXED},
                   interfaces={"default": {"friction_angle": friction}})  # fmt: skip
     weight, wall, b = UNIT * length * (high - step) / 2, UNIT * wide * high, np.radians(dip)
@@ -150,6 +162,7 @@ def roof(name: str, quick: bool = False) -> Slope:
     wedge = [(-low, 0.0), (low, 0.0), (top, high), (-top, high)]
     right = [(low, 0.0), (low + 3, 0.0), (low + 3, high), (top, high)]
     left = [(-x, z) for x, z in right]
+    blocks: list[dict[str, Any]]
     blocks = [{"group": g, "polyhedron": section(p, width)}
               for g, p in (("wedge", wedge), ("left", left), ("right", right))]  # fmt: skip
     blocks.append({"group": "roof", "box": {"size": [2 * low + 6, width, 4]},

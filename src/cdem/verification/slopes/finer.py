@@ -16,7 +16,10 @@ from cdem.verification.slopes.slope import GRAVITY, Slope
 def finer(slope: Slope, cells: int) -> Slope:
     """Divide each body into cells by cells hexahedra; sections must have four corners."""
     case = deepcopy(slope.case)
-    kept, points, hexes, numbers = [], [], [], []
+    kept: list[dict[str, Any]] = []
+    points: list[np.ndarray] = []
+    hexes: list[np.ndarray] = []
+    numbers: list[np.ndarray] = []
     groups: list[str] = []
     for block in case["model"]["blocks"]:
         if "box" in block:
@@ -30,7 +33,7 @@ def finer(slope: Slope, cells: int) -> Slope:
         high = (1 - across) * corners[3] + across * corners[2]
         x = (1 - along) * low + along * high
         x[:, 1] = unit.points[:, 1] * np.ptp(np.array(block["polyhedron"]["vertices"])[:, 1])
-        hexes.append(np.asarray(unit.cells["hex8"]) + sum(map(len, points)))
+        hexes.append(np.asarray(unit.cells["hex8"]) + sum(len(p) for p in points))
         points.append(x)
         if block["group"] not in groups:
             groups.append(block["group"])

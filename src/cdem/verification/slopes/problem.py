@@ -1,4 +1,4 @@
-"""Slopes: 28 factors of safety against closed forms and published intervals."""
+"""31 slopes: factors of safety against closed forms and published intervals."""
 
 import tempfile
 from dataclasses import replace
@@ -37,7 +37,9 @@ def search(study, slope):
     """What `cdem critical --factor` finds with all its defaults."""
     with tempfile.TemporaryDirectory() as folder:
         case = replace(slope, case=held(slope.case)).load(Path(folder))
-        return find_critical(case, strength_reduction(), None, tolerance=0.01, threads=study.threads)
+        return find_critical(
+            case, strength_reduction(), None, tolerance=0.01, threads=study.threads
+        )
 
 
 def run(study):

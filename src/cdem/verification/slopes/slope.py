@@ -88,7 +88,8 @@ def static(
         "model": model,
         "materials": materials,
         "groups": named | more.pop("groups", {}),
-        "interfaces": {"default": {"friction_angle": 30}, "pairs": pairs} | more.pop("interfaces", {}),
+        "interfaces": {"default": {"friction_angle": 30}, "pairs": pairs}
+        | more.pop("interfaces", {}),
         "loads": loads,
         "stages": [{"name": "rest", "mode": "static"}],
     } | more
