@@ -123,13 +123,14 @@ def three_sets(name: str, height: float) -> Slope:
         "joints": [
             {"name": "bedding", "dip": dip, "dip_direction": 90, "origin": origin,
              "spacing": 0.3 * height},
-            {"name": "cross", "dip": 90, "dip_direction": 90, "origin": [0.8 * back, 0, 0],
+            {"name": "cross", "dip": 90, "dip_direction": 90, "origin": [0.5 * back, 0, 0],
              "spacing": 0.37 * height},
             {"name": "side", "dip": 90, "dip_direction": 0, "origin": [0, 0.45 * width, 0]},
         ],
     }  # fmt: skip
     pairs = [joint("bedding", friction), joint("cross", friction), joint("side", friction)]
-    case = static(name, model, pairs, [below(0.01), sides(width)], rock(UNIT))
+    rear = {"surface": {"group": "rock", "normal": [-1, 0, 0]}, "fix": ["x"]}
+    case = static(name, model, pairs, [below(0.01), sides(width), rear], rock(UNIT))
     return Slope(name, height, case, tan(friction) / tan(dip))
 
 
