@@ -155,7 +155,7 @@ def roof(name: str, quick: bool = False) -> Slope:
     """A wedge in a roof between two abutments, one pressed on with a constant force H; an anchor.
 
     Both faces lean by a from the vertical and slide at the limit: 2 H tan(phi_F - a) = W - T,
-    tan(phi_F) = tan(phi) / F (Goodman 1989, chapter 8; Brady & Brown 2004, section 8.5).
+    tan(phi_F) = tan(phi) / F (after Brady & Brown 2004, chapter 9).
     """
     lean, friction, high, top, width = 20.0, 38.0, 5.0, 1.0, 2.0
     thrust, pull = 1.2e6, 250e3  # per metre of roof [N/m]

@@ -121,7 +121,7 @@ def slope(
 
 
 ACADS = Profile(10.0, 20.0, 20.0, 10.0, 5.0)
-"""The profile of examples 1 of ACADS (Donald & Giam 1989): 2:1, ground 5 m below the toe."""
+"""The profile of examples 1 of ACADS (Giam & Donald 1989): 2:1, ground 5 m below the toe."""
 
 
 def three_soils(middles: Floats) -> list[str]:
