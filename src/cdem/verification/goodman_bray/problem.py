@@ -19,28 +19,32 @@ def heights():
     return np.array(y)
 
 
-def theory(low=0.5, high=1.2):
-    """Friction angle [deg] at which the toe needs no support (Goodman & Bray 1976).
+def support(friction):
+    """Force over the unit weight that the toe column needs, at a tangent of friction [m3/m].
 
     From the top down, column n must be held from below by the larger of the forces that stop it
-    from toppling
-    about its lower edge and from sliding on its base, when the column above pushes with P at the
-    height M and rubs with P tan(phi); it is held at the height L.
+    from toppling about its lower edge and from sliding on its base, when the column above pushes
+    with P at the height M and rubs with P tan(phi); it is held at the height L.
     """
+    push, y = 0.0, heights()
+    for n in range(COUNT - 1, -1, -1):
+        upper = y[n] if n + 1 < CREST else y[n] - ABOVE  # M
+        lower = y[n] - BELOW if n < CREST else y[n]  # L
+        weight = y[n] * WIDTH
+        topple = push * (upper - friction * WIDTH)
+        topple += weight / 2 * (y[n] * np.sin(DIP) - WIDTH * np.cos(DIP))
+        slide = push - weight * (friction * np.cos(DIP) - np.sin(DIP)) / (1 - friction**2)
+        if n == 0:  # the toe column is held by its base alone
+            lower = np.inf
+        push = max(topple / lower if np.isfinite(lower) else 0.0, slide, 0.0)
+    return push
+
+
+def theory(low=0.5, high=1.2):
+    """Friction angle [deg] at which the toe needs no support (Goodman & Bray 1976)."""
     while high - low > 1e-9:
         friction = 0.5 * (low + high)
-        push, y = 0.0, heights()
-        for n in range(COUNT - 1, -1, -1):
-            upper = y[n] if n + 1 < CREST else y[n] - ABOVE  # M
-            lower = y[n] - BELOW if n < CREST else y[n]  # L
-            weight = y[n] * WIDTH
-            topple = push * (upper - friction * WIDTH)
-            topple += weight / 2 * (y[n] * np.sin(DIP) - WIDTH * np.cos(DIP))
-            slide = push - weight * (friction * np.cos(DIP) - np.sin(DIP)) / (1 - friction**2)
-            if n == 0:  # the toe column is held by its base alone
-                lower = np.inf
-            push = max(topple / lower if np.isfinite(lower) else 0.0, slide, 0.0)
-        low, high = (friction, high) if push > 0 else (low, friction)
+        low, high = (friction, high) if support(friction) > 0 else (low, friction)
     return np.degrees(np.arctan(high))
 
 
