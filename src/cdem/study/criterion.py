@@ -25,8 +25,8 @@ class Criterion(Part):
 
     travel: Annotated[float, Quantity("1", above=0)] = Field(
         0.01,
-        description="In a model with bolts, which may tighten: a body that gains speed under a steady "
-        "force slides once a node has moved this fraction of the mean face size, or after 10,000 steps",
+        description="A body that gains speed under a steady force slides once a node has moved this "
+        "fraction of the mean face size, or after 10,000 steps: anchors tighten, joints close before",
     )
     far: Annotated[float, Quantity("1", above=0)] = Field(
         1.0, description="A node has moved this fraction of the mean face size, at any speed"
@@ -109,7 +109,7 @@ class Criterion(Part):
             "1e-4 of the free volume" if self.ignore_below is None else f"{self.ignore_below:g} m3"
         )
         return (
-            f"fails when a body gains speed under a steady force, judged after {steps}, or has moved "
-            f"{100 * self.far:g} % of the mean face size, or finds no rest in {self.most_steps:,} "
+            f"fails when a body gains speed under a steady force, judged after {steps} and "
+            f"{100 * self.travel:g} % of the mean face size, or has moved {100 * self.far:g} % of it, or finds no rest in {self.most_steps:,} "
             f"steps{bound}; bodies below {chip} are taken out"
         )

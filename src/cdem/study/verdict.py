@@ -220,8 +220,7 @@ class _Watch:
 
         In the last quarter of all steps it moved no less far than in the quarter before. Where the
         ratio has fallen by less than a tenth in the last half, it slides, by less than half, it
-        creeps. If it creeps, or if it has not moved by `travel` in a model with bolts, which may still
-        tighten, this must be so after four times the wait and `UNKNOWN` steps.
+        creeps. If it creeps, or if it has not moved by `travel`, this must be so after four times the wait and `UNKNOWN` steps.
         """
         last = len(self.looks) - 1
         quarter = last // 4
@@ -230,8 +229,8 @@ class _Watch:
         if slower or now.least <= 0.5 * half.least:
             return None
         saw: Seen = "sliding" if now.least > STEADY * half.least else "creeping"
-        tightens = bool(self.sim.case.bolts) and now.moved <= self.criterion.travel
-        if (saw == "creeping" or tightens) and done < max(UNKNOWN, 4 * self.wait):
+        may_tighten = now.moved <= self.criterion.travel  # an anchor, or a joint that closes again
+        if (saw == "creeping" or may_tighten) and done < max(UNKNOWN, 4 * self.wait):
             return None
         return Verdict(False, saw, f"{text}, ratio stays at {now.least:.2g}", self.moved())
 

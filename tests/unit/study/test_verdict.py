@@ -8,7 +8,7 @@ from cdem.study.criterion import Criterion
 from cdem.study.verdict import LEAST_STEPS, LOOK, UNKNOWN, _Watch
 
 
-def watch_of(looks, wait=LEAST_STEPS, bolts=()):
+def watch_of(looks, wait=LEAST_STEPS):
     """Verdicts on a block of faces of 1 m, of which each look sees a way [m] and an unbalance ratio."""
     ratio = [1.0]
     topology = SimpleNamespace(block_group=np.zeros(1, int), node_block=np.zeros(1, int))
@@ -20,7 +20,6 @@ def watch_of(looks, wait=LEAST_STEPS, bolts=()):
         core=SimpleNamespace(unbalance_ratio=lambda: ratio[0]),
         fields={"position": np.zeros((1, 3)), "velocity": np.zeros((1, 3))},
         out=np.zeros(1, bool),
-        case=SimpleNamespace(bolts=bolts),
         step_count=0,
     )
     watch = _Watch(sim, Criterion(), wait)
@@ -38,10 +37,9 @@ def steps(count, way, ratio):
 
 
 def test_a_body_that_gains_speed_under_a_steady_force_slides():
-    """Not before four looks, nor, with bolts, before it has moved by a hundredth of a face."""
+    """Not before four looks, nor before it has moved by a hundredth of a face."""
     accelerated = steps(8, lambda k: 5e-4 * k**2, lambda k: 0.02)
-    assert list(watch_of(accelerated)) == [*3 * [None], *5 * ["sliding"]]
-    assert list(watch_of(accelerated, bolts=["rod"])) == [*4 * [None], *4 * ["sliding"]]
+    assert list(watch_of(accelerated)) == [*4 * [None], *4 * ["sliding"]]
 
 
 def test_soft_rock_that_sags_far_is_not_sliding():
@@ -59,7 +57,7 @@ def test_a_body_that_slows_down_under_a_steady_force_is_not_sliding():
 
 def test_an_anchor_may_tighten_while_a_body_has_hardly_moved():
     slow = steps(UNKNOWN // LOOK, lambda k: 9e-3 * (k * LOOK / UNKNOWN) ** 2, lambda k: 1e-4)
-    seen = list(watch_of(slow, bolts=["rod"]))
+    seen = list(watch_of(slow))
     assert not any(seen[:-1]) and seen[-1] == "sliding"
 
 

@@ -1,15 +1,14 @@
 """31 slopes: factors of safety against closed forms and published intervals."""
 
 import tempfile
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
 from cdem.study.critical import find_critical, strength_reduction
+from cdem.study.strengths import keep_strengths
 from cdem.verification.slopes.bodies import bodies
 from cdem.verification.slopes.finer import finer, stiffer
-from cdem.verification.slopes.held import held
 from cdem.verification.slopes.planes import planes
 from cdem.verification.slopes.soil import soil
 from cdem.verification.slopes.wedges import wedges
@@ -34,11 +33,11 @@ def theory(name):
 
 
 def search(study, slope):
-    """What `cdem critical --factor` finds with all its defaults."""
+    """What `cdem critical --factor` finds with strengths kept, and all its defaults."""
     with tempfile.TemporaryDirectory() as folder:
-        case = replace(slope, case=held(slope.case)).load(Path(folder))
+        case, _ = keep_strengths(slope.load(Path(folder)))
         return find_critical(
-            case, strength_reduction(), None, tolerance=0.01, threads=study.threads
+            case, strength_reduction(keep=True), None, tolerance=0.01, threads=study.threads
         )
 
 
