@@ -34,7 +34,7 @@ def theory(name):
 
 
 def search(study, slope):
-    """What `cdem critical --factor` finds with all its defaults."""
+    """What `cdem critical --factor` finds by default, for joints that keep their cohesion."""
     with tempfile.TemporaryDirectory() as folder:
         case = replace(slope, case=held(slope.case)).load(Path(folder))
         return find_critical(
