@@ -24,7 +24,7 @@ class Criterion(Part):
     """Limits beyond which a case that has not come to rest has failed."""
 
     travel: Annotated[float, Quantity("1", above=0)] = Field(
-        0.01,
+        0.005,
         description="A body that gains speed under a steady force slides once a node has moved this "
         "fraction of the mean face size, or after 10,000 steps: anchors tighten, joints close before",
     )

@@ -37,8 +37,8 @@ def steps(count, way, ratio):
 
 
 def test_a_body_that_gains_speed_under_a_steady_force_slides():
-    """Not before four looks, nor before it has moved by a hundredth of a face."""
-    accelerated = steps(8, lambda k: 5e-4 * k**2, lambda k: 0.02)
+    """Not before four looks, nor before it has moved by a two-hundredth of a face."""
+    accelerated = steps(8, lambda k: 2.5e-4 * k**2, lambda k: 0.02)
     assert list(watch_of(accelerated)) == [*4 * [None], *4 * ["sliding"]]
 
 
@@ -56,7 +56,7 @@ def test_a_body_that_slows_down_under_a_steady_force_is_not_sliding():
 
 
 def test_an_anchor_may_tighten_while_a_body_has_hardly_moved():
-    slow = steps(UNKNOWN // LOOK, lambda k: 9e-3 * (k * LOOK / UNKNOWN) ** 2, lambda k: 1e-4)
+    slow = steps(UNKNOWN // LOOK, lambda k: 4e-3 * (k * LOOK / UNKNOWN) ** 2, lambda k: 1e-4)
     seen = list(watch_of(slow))
     assert not any(seen[:-1]) and seen[-1] == "sliding"
 

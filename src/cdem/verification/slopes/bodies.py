@@ -87,19 +87,19 @@ def pushed(
 
 def stepped(name: str, friction: float, cohesion: float, quick: bool = False) -> Slope:
     """A body on five treads of 25 degrees; the vertical risers between them stand open by 5 cm."""
-    dip, tread, riser, count, thick, width, gap = 25.0, 4.0, 1.5, 5, 6.0, 3.0, 0.05
-    fall = tread * tan(dip)
+    dip, going, riser, count, thick, width, gap = 25.0, 4.0, 1.5, 5, 6.0, 3.0, 0.05
+    fall = going * tan(dip)
     top = count * (fall + riser) - riser + thick
     blocks, weight = [], 0.0
     for n in range(count):
-        right, low = -n * tread, n * (fall + riser)
-        foot = [(right, low), (right - tread, low + fall)]
-        body = [*foot, (right - tread, low + fall + thick), (right, low + thick)]
+        right, low = -n * going, n * (fall + riser)
+        foot = [(right, low), (right - going, low + fall)]
+        body = [*foot, (right - going, low + fall + thick), (right, low + thick)]
         edge = right - gap
-        bed = [(edge, -3.0), (right - tread, -3.0), foot[1], (edge, low + gap * tan(dip))]
+        bed = [(edge, -3.0), (right - going, -3.0), foot[1], (edge, low + gap * tan(dip))]
         blocks += [{"group": "slide", "polyhedron": section(body, width)},
                    {"group": "bed", "polyhedron": section(bed, width)}]  # fmt: skip
-        weight += UNIT * tread * thick
+        weight += UNIT * going * thick
     strong = {"cohesion": 20e6, "tensile_strength": 20e6}
     held = {"cohesion": cohesion} if cohesion else {}
     pairs = [pair("slide", "bed", friction, **held), pair("slide", "slide", 45, **strong)]
@@ -107,7 +107,7 @@ def stepped(name: str, friction: float, cohesion: float, quick: bool = False) ->
                   groups={"bed": FIXED})  # fmt: skip
     b = np.radians(dip)
     factor = tan(friction) / tan(dip)
-    factor += cohesion * count * (tread - gap) / np.cos(b) / (weight * np.sin(b))
+    factor += cohesion * count * (going - gap) / np.cos(b) / (weight * np.sin(b))
     return Slope(name, top, case, float(factor), 0.1, quick)
 
 

@@ -176,7 +176,7 @@ def planes() -> list[Slope]:
     return [
         cut("plane, dry, friction alone", 5, 60.0, 35.0, 40.0, quick=True),
         cut("plane, dry, cohesion", 20, 70.0, 40.0, 30.0, 25e3, quick=True),
-        cut("plane, dry, 300 m high", 300, 50.0, 32.0, 28.0, 400e3),
+        cut("plane, dry, cohesion, high", 300, 50.0, 32.0, 28.0, 400e3),
         shaken("plane, 0.15 g sideways", 40, 0.15, quick=True),
         cracked("plane, tension crack, dry", 0.0, quick=True),
         cracked("plane, tension crack half full", 0.5),

@@ -158,7 +158,9 @@ def wedges() -> list[Slope]:
     loose = Wedge(40, 65, Plane(50, 45, 35), Plane(55, 130, 35))
     small = Wedge(20, 65, Plane(50, 45, 35), Plane(55, 130, 35))
     bound = Wedge(40, 65, Plane(50, 45, 35, 60e3), Plane(55, 130, 35, 60e3))
+    flat = Wedge(20, 70, Plane(45, 105, 20), Plane(70, 20, 30))
     dry = [("wedge, friction alone", loose), ("wedge, 30 and 20 degrees of friction", askew),
+           ("wedge, nearly all on one joint", flat),
            ("wedge, cohesion", steep), ("wedge, cohesion, one joint steep", held)]  # fmt: skip
     return [
         *(Slope(name, w.height, w.case(name), w.factor(), quick=w is steep) for name, w in dry),
