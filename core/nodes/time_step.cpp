@@ -25,6 +25,11 @@ Real strongly_damped(Real xi) {
   return sure_contact_damping * damped(sure_contact_damping) * undamped / xi;
 }
 
+/// Further factor where scaled masses bring all nodes to the limit, each with many dashpots.
+Real many_damped(Real xi) {
+  return std::min(1.0, damped(dashpots_at_node * xi) / (damped(xi) * strongly_damped(xi)));
+}
+
 NodeFrequency node_frequency(const Model& m, const State& s, bool held) {
   return {.mass = mass_columns(m, s),
           .supports = support_columns(m, s),
@@ -103,7 +108,7 @@ void advance_clock(const Model& m, State& s) {
 
 void scale_masses(const Model& m, State& s) {
   const StepLimit limit = step_limit(m, s);
-  const Real part = s.dt / (relax_safety * limit.dt);
+  const Real part = s.dt / (relax_safety * limit.dt * many_damped(m.contact_damping));
   const Real squared =
       (limit.element_frequency_squared + limit.contact_frequency_squared) / (part * part);
   const NodeFrequency nodes = on_host(node_frequency(m, s, false));
