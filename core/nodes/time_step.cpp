@@ -25,11 +25,6 @@ Real strongly_damped(Real xi) {
   return sure_contact_damping * damped(sure_contact_damping) * undamped / xi;
 }
 
-/// Further factor where scaled masses bring all nodes to the limit, each with many dashpots.
-Real many_damped(Real xi) {
-  return std::min(1.0, damped(dashpots_at_node * xi) / (damped(xi) * strongly_damped(xi)));
-}
-
 NodeFrequency node_frequency(const Model& m, const State& s, bool held) {
   return {.mass = mass_columns(m, s),
           .supports = support_columns(m, s),
@@ -108,7 +103,7 @@ void advance_clock(const Model& m, State& s) {
 
 void scale_masses(const Model& m, State& s) {
   const StepLimit limit = step_limit(m, s);
-  const Real part = s.dt / (relax_safety * limit.dt * many_damped(m.contact_damping));
+  const Real part = s.dt / (relax_safety * limit.dt);
   const Real squared =
       (limit.element_frequency_squared + limit.contact_frequency_squared) / (part * part);
   const NodeFrequency nodes = on_host(node_frequency(m, s, false));
@@ -117,7 +112,8 @@ void scale_masses(const Model& m, State& s) {
   const auto masses = on_host(s.nodes.relax_mass), relax = on_host(s.nodes.relax);
   for (Index i = 0; i < m.node_count; ++i) {
     const Real elements = nodes.model_mass[i] * nodes.lumped_frequency_squared[i];
-    const Real needed = (elements + 2 * nodes.stiffness_at(i)) / squared;
+    const Real springs = nodes.stiffness_at(i) + nodes.contacts_at(i);
+    const Real needed = (elements + 2 * springs) / squared;
     if (needed > masses[i] && relax.size() > 0) relax[8 * std::size_t(i) + 3] *= masses[i] / needed;
     masses[i] = needed;
   }

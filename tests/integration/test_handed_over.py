@@ -11,7 +11,8 @@ from cdem.errors import UnstableError
 from cdem.run.state import Attributes, StageState
 from cdem.verification.dry_wall.problem import wall
 
-BED = {"group": "bed", "box": {"size": [4, 4, 0.5]}, "translate": [-1.5, -1.5, -0.5]}
+BED = {"group": "bed", "box": {"size": [4, 4, 0.5], "divisions": [8, 4, 1]},
+       "translate": [-1.5, -1.5, -0.5]}  # fmt: skip
 CUBE = {"group": "block", "box": {"size": [1, 1, 1]}, "translate": [0, 0, 1e-4]}
 REST = {"name": "rest", "mode": "static"}
 ON = {"name": "on", "mode": "dynamic", "duration": 0.002}
@@ -31,7 +32,7 @@ def run(made, **more):
 
 
 def dropped(*stages, **more):
-    """A cube falls by 0.1 mm on a bed of stiff joints, where adaptive relaxation misses 5.3 %."""
+    """A cube falls by 0.1 mm on a bed of stiff joints, where adaptive relaxation misses 6.7 %."""
     stiff = {"stiffness_n": "10 E/h", "stiffness_s": "10 E/h"}
     return make([BED, CUBE], *stages, interface=stiff, **more)
 
@@ -41,9 +42,7 @@ def laid(length, courses):
     floor = {"size": [2.4, 0.5, 0.1], "divisions": [24, 5, 1]}
     rows = [{"group": "bed", "box": floor, "translate": [-0.6, -0.2, -0.1]}]
     for x, z, wide, high, deep in wall(length, courses):
-        rows.append(
-            {"group": "block", "box": {"size": [wide, deep, high]}, "translate": [x, 0, z]}
-        )
+        rows.append({"group": "block", "box": {"size": [wide, deep, high]}, "translate": [x, 0, z]})
     return rows
 
 
@@ -84,7 +83,7 @@ def test_stage_that_loses_the_balance_goes_on_by_local_damping(tmp_path):
     assert "handed_over" not in on
     log = (tmp_path / "r" / "run.log").read_text()
     assert log.count("so the stage goes on from there by relax: local") == 1
-    assert "rest: after 141 steps" in log
+    assert "of adaptive relaxation the energy balance is off by -6.6" in log
     assert json.loads((tmp_path / "r" / "summary.json").read_text())["stages"][0] == rest
     assert abs(sim.energies["error"]) < 1e-9
     weight = 1e-4 * 2500 * 9.81
@@ -104,7 +103,7 @@ def test_stage_handed_over_keeps_its_bits_through_a_stop(tmp_path):
     first.close()
     again, ended = run(made, output=tmp_path / "r", resume=True)
     assert ended == "finished"
-    assert 142 < first.step_count < whole.finished_stages[0]["steps"]
+    assert 100 < first.step_count < whole.finished_stages[0]["steps"]
     assert again.finished_stages[0]["handed_over"] is True
     fields = whole.core.fields()
     for name, field in again.core.fields().items():
@@ -145,4 +144,4 @@ def test_handed_over_stage_is_judged_like_any_other():
 def test_stage_out_of_steps_is_not_handed_over():
     """At its last step a stage that has lost the balance still fails."""
     with pytest.raises(UnstableError, match="energy balance is off"):
-        run(dropped(REST | {"max_steps": 140}))
+        run(dropped(REST | {"max_steps": 155}))
