@@ -166,8 +166,8 @@ def scenes() -> dict[str, Callable[[], Scene]]:
     add("the same, contact damping 0.1", wall, 6, 8, beds=many, damping=0.1)
     add("wall 2 x 3, 1 mm apart, 10 E/h", wall, 2, 3, apart=1e-3, beds=(8, 4, 1), soft=0.08,
         friction=20, stiffness="10 E/h")  # fmt: skip
-    add("cube 0.1 mm above 32 faces, 10 E/h", stack, 1, gap=1e-4, beds=(8, 4, 1),
-        stiffness="10 E/h")  # fmt: skip
+    cube = [box((1, 1, 1), (0, 0, 1e-4)), bed((4, 4), (-1.5, -1.5), (8, 4, 1))]
+    add("cube 0.1 mm above 32 faces, 10 E/h", scene, cube, stiffness="10 E/h")
     return found
 
 
