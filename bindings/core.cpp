@@ -322,6 +322,13 @@ void bind_run(nb::class_<Core>& core) {
           "release_forces",
           [](Core& c, Real part, Real end) { release_forces(c.state, part, end); }, "part"_a,
           "end_time"_a)
+      .def("leave_adaptive",
+           [](Core& c) {  // the next step stops all motion, if it is one of kinetic relaxation
+             close_ledger(c.model, c.state);
+             change_mass(c.model, c.state, c.model.lumped);
+             renew_step(c.model, c.state);
+             c.state.stop_due = true;
+           })
       .def("renew_step", [](Core& c) { renew_step(c.model, c.state); })
       .def("change_mass", [](Core& c, bool lumped) { change_mass(c.model, c.state, lumped); })
       .def("move_exact_masses",

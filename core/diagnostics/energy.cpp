@@ -94,6 +94,10 @@ void keep_energy_scale(const Model& m, State& s) {
   s.energy_scale = std::max(s.energy_scale, largest_term(energies(m, s)));
 }
 
+void close_ledger(const Model& m, State& s) {
+  s.stopped_energy += s.energy_start - balance(sum_terms(m, s));
+}
+
 void open_ledger(const Model& m, State& s) {
   s.ledger_started = true;
   // the first sample may come later than the first step: count losses and work until then

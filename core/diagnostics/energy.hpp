@@ -19,6 +19,10 @@ Energies energies(const Model& model, const State& state);
 /// Remember the largest term of the ledger so far, which the closing error is measured against.
 void keep_energy_scale(const Model& model, State& state);
 
+/// Close the ledger of a relaxation that did not resolve its motion: the energy missing now is
+/// booked as damping.
+void close_ledger(const Model& model, State& state);
+
 /// Open the ledger with the first sampled step.
 void open_ledger(const Model& model, State& state);
 

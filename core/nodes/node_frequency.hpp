@@ -55,9 +55,12 @@ struct NodeFrequency {
     return all;
   }
   /// Stiffness of bonds and contacts, including ones that may begin, on a node  [N/m].
-  CDEM_HD Real stiffness_at(Index i) const {
-    return max_of(potential[i], force[std::size_t(i) * 4 + 3]) + bonds[i];
+  CDEM_HD Real stiffness_at(Index i) const { return max_of(potential[i], acting_at(i)) + bonds[i]; }
+  /// Stiffness of contacts alone: of those that act, and without bonds of those that may begin too.
+  CDEM_HD Real contacts_at(Index i) const {
+    return bonds[i] > 0 ? acting_at(i) : max_of(potential[i], acting_at(i));
   }
+  CDEM_HD Real acting_at(Index i) const { return force[std::size_t(i) * 4 + 3]; }
 
  private:
   CDEM_HD bool is_held(Index node) const {

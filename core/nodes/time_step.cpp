@@ -112,7 +112,8 @@ void scale_masses(const Model& m, State& s) {
   const auto masses = on_host(s.nodes.relax_mass), relax = on_host(s.nodes.relax);
   for (Index i = 0; i < m.node_count; ++i) {
     const Real elements = nodes.model_mass[i] * nodes.lumped_frequency_squared[i];
-    const Real needed = (elements + 2 * nodes.stiffness_at(i)) / squared;
+    const Real springs = nodes.stiffness_at(i) + nodes.contacts_at(i);
+    const Real needed = (elements + 2 * springs) / squared;
     if (needed > masses[i] && relax.size() > 0) relax[8 * std::size_t(i) + 3] *= masses[i] / needed;
     masses[i] = needed;
   }

@@ -54,9 +54,11 @@ bool step_is_due(const State& state);
 void advance_clock(const Model& model, State& state);
 
 /// Adaptive relaxation: give every node the least mass that its stiffness allows in the present
-/// step (Gershgorin), so that stiff and small parts hold up no others. A node that becomes heavier
-/// keeps its momentum, one that becomes lighter its velocity: either takes energy, which is booked
-/// as damping. It lasts until `change_mass`.
+/// step (Gershgorin), so that stiff and small parts hold up no others. Contacts count twice: they
+/// open and close within steps, and with all nodes at the limit walls gained up to half of their
+/// energy, or 12 % with a contact damping of 0.1, as a node has many dashpots. A node that becomes
+/// heavier keeps its momentum, one that becomes lighter its velocity: either takes energy, which is
+/// booked as damping. It lasts until `change_mass`.
 void scale_masses(const Model& model, State& state);
 
 }  // namespace cdem

@@ -355,7 +355,7 @@ def test_adaptive_relaxation_with_contacts_gives_identical_results(tmp_path):
                 {"bed": {"fix": ["x", "y", "z"]}, "stone": {}},
                 interfaces={"default": {"friction_angle": 30}},
                 loads={"gravity": [0.3, 0.1, -9.81]},
-                stages=[{"name": "rest", "mode": "static", "relax": "adaptive", "max_steps": 300}],
+                stages=[{"name": "rest", "mode": "static", "relax": "adaptive", "max_steps": 1000}],
             ),
             threads=threads,
             **more,

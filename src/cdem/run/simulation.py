@@ -327,7 +327,8 @@ class Simulation(RunState):
             self._log_departures()
             stages.look_for_rest(self, stage)
             self._record(frame=ended or stages.frame_is_due(self, stage, outcome))
-            self._check()
+            if self._check(stage):
+                outcome = "steps_done"  # rest is sought anew
             self._look_at_weakening()
         return stages.status(self, stage, outcome) or ("ended" if ended else None)
 
@@ -346,17 +347,16 @@ class Simulation(RunState):
                 self.results.log(f"warning: {self.flow.ended}")
 
     def _end_stage(self, stage: StageState, status: str) -> None:
-        self.finished_stages.append(
-            {
-                "name": stage.name,
-                "mode": stage.mode,
-                "status": status,
-                "begin": stage.start_time,
-                "steps": self.step_count - stage.start_step,
-                "time": self.time - stage.start_time,
-                "wall_time": stage.wall_time,
-            }
-        )
+        row = {
+            "name": stage.name,
+            "mode": stage.mode,
+            "status": status,
+            "begin": stage.start_time,
+            "steps": self.step_count - stage.start_step,
+            "time": self.time - stage.start_time,
+            "wall_time": stage.wall_time,
+        }
+        self.finished_stages.append(row | ({"handed_over": True} if stage.handed_over else {}))
         if self.results:
             for strain in large_strains(self):
                 self.results.log(f"warning: {strain.text()}")
@@ -377,11 +377,16 @@ class Simulation(RunState):
         if self.results:
             self.results.record(self, frame)
 
-    def _check(self) -> None:
-        """End a run whose results are no longer trustworthy."""
+    def _check(self, stage: StageState) -> bool:
+        """End a run whose results are no longer trustworthy; or hand the stage over, and say so."""
         stages.refuse_curves_over(self)
-        if why := failures.of_energy(self) or failures.of_strain(self):
+        of_energy = failures.of_energy(self)
+        if of_energy and stages.may_hand_over(self, stage):
+            self._guard(partial(stages.relax_locally, self, stage))
+            return True
+        if why := of_energy or failures.of_strain(self):
             raise self._failed(why)
+        return False
 
     def _look_at_weakening(self) -> None:
         """Warn once of an interface whose friction falls too fast for the step."""

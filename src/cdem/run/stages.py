@@ -25,6 +25,8 @@ ROWS_PER_FRAME = 10
 """History rows per recorded frame of a dynamic stage."""
 RELAXATIONS = {"local": "none", "kinetic": "kinetic", "adaptive": "adaptive", "solve": "adaptive"}
 """What the core does in each step of a static stage, by its `relax`."""
+LOCAL_DAMPING = 0.8
+"""Local damping by which a stage goes on where adaptive relaxation lost the balance of energy."""
 LEAST_GAIN = 0.1
 """Part of the unbalance ratio below which a solve must bring it, or it is taken back."""
 FRAMES = 50
@@ -256,6 +258,38 @@ def _solved(sim: RunState) -> str:
     return "relax: solve found no rest nearby, so the stage goes on as adaptive"
 
 
+def may_hand_over(sim: RunState, stage: StageState) -> bool:
+    """Whether local damping may go on in place of the adaptive relaxation of a stage."""
+    rules = sim.case.stages[sim.stage_index]
+    if stage.mode != "static" or stage.handed_over or status(sim, stage, "") is not None:
+        return False
+    return rules.relax is not None and RELAXATIONS[rules.relax] == "adaptive"
+
+
+def relax_locally(sim: RunState, stage: StageState) -> tuple[str, int, float]:
+    """Let local damping go on, from the present positions without motion; returns the core's report.
+
+    The missing energy is booked as damping, so the balance of all that follows starts anew.
+    """
+    sim.tell(
+        f"{stage.name}: after {sim.step_count - stage.start_step:,} steps of adaptive relaxation the "
+        f"energy balance is off by {100 * sim.energies['error']:.3g} %, so the stage goes on from there "
+        "by relax: local"
+    )
+    stage.handed_over = True
+    sim.core.leave_adaptive()
+    report = sim.core.run(1, relaxation="kinetic")  # this stops all motion
+    damp_locally(sim)
+    sim.core.renew_step()
+    return report
+
+
+def damp_locally(sim: RunState) -> None:
+    """Give the core the damping of the present stage, which has been handed over."""
+    local, *others = damping_of(sim.case.stages[sim.begun - 1])
+    sim.core.set_damping(local or LOCAL_DAMPING, *others)
+
+
 def change_end(sim: RunState, *, longer: bool) -> None:
     """Let the stage of a resumed run end according to the present case.
 
@@ -280,6 +314,8 @@ def catch_up(sim: RunState) -> None:
         for setting in sim.settings:
             if setting.begun == done:
                 change_value(sim, setting)
+    if (last := sim.stage or sim.ended_stage) and last.handed_over:
+        damp_locally(sim)
     hand_over(sim.core, sim.build.curves, sim.begins)
     added = {name for stage in sim.case.stages[: sim.begun] for name in stage.add}
     if added:
@@ -299,13 +335,13 @@ def advance(sim: RunState, stage: StageState, steps: int, until: float) -> tuple
         )  # the case has filled them in
         over = sim.begins[stage.name] + last_change(sim.case, stage.name)
         changes = sim.time < over  # no rest before its curves are over
-        if rules.relax == "solve" and not changes and not stage.solved:
+        if rules.relax == "solve" and not (changes or stage.solved or stage.handed_over):
             solve(sim, stage)
         report = sim.core.run(
             steps,
             end_time=min(until, over) if changes else until,
             unbalance_limit=0.0 if changes else rules.tolerance,
-            relaxation=RELAXATIONS[rules.relax],
+            relaxation="none" if stage.handed_over else RELAXATIONS[rules.relax],
         )
         goes_on = report[0] == "converged" and release_part(sim, stage)
         return ("steps_done", *report[1:]) if goes_on else report

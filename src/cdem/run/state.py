@@ -49,6 +49,8 @@ class StageState:
         held: Fraction of the forces of removed groups still held at the start of the stage [1].
         solved: Static stage with `relax: solve`: result of the last solve since the forces changed, or
             nothing.
+        handed_over: Static stage with `relax: adaptive` or `solve`: whether local damping goes on, as
+            the energy balance did not close.
     """
 
     name: str
@@ -66,6 +68,7 @@ class StageState:
     parts: int = 0
     held: float = 0.0
     solved: str = ""
+    handed_over: bool = False
 
     def note(self, step: int, unbalance: float) -> str:
         """Advice about a static stage that does not come to rest, or nothing."""
@@ -147,8 +150,8 @@ class Attributes(BaseModel):
             quiet = stage.get("quiet")
             for kept, kind in ((stage, StageState), (quiet, Quiet)):
                 names = {one.name for one in fields(kind)}
-                # a checkpoint of before `relax: solve` has no `solved`
-                if not isinstance(kept, dict) or kept.keys() | {"solved"} != names | {"solved"}:
+                late = {"solved", "handed_over"}  # older checkpoints lack them
+                if not isinstance(kept, dict) or kept.keys() | late != names | late:
                     raise ValueError(f"not the values of a {kind.__name__}")
         return stage
 

@@ -36,6 +36,25 @@ TEST_CASE("a body that falls gains what its weight has done") {
   CHECK(relative_error(e.terms[energy_term("kinetic")], e.terms[energy_term("external")]) < 1e-9);
 }
 
+TEST_CASE("a ledger that is closed books the missing energy as damping, and goes on from there") {
+  Scene scene;
+  scene.add_box({0, 0, 0}, {1, 1, 1});
+  scene.build();
+  scene.model.gravity = {0, 0, -10};
+  scene.start();
+  scene.step(100);
+  const Energies before = energies(scene.model, scene.state);
+  scene.state.energy_start += 0.1 * before.terms[energy_term("external")];
+  CHECK(relative_error(energies(scene.model, scene.state).error, -0.1) < 1e-6);
+  close_ledger(scene.model, scene.state);
+  const Energies closed = energies(scene.model, scene.state);
+  const Real missing = 0.1 * before.terms[energy_term("external")];
+  CHECK(relative_error(closed.terms[energy_term("damping")], missing) < 1e-6);
+  CHECK(std::abs(closed.error) < 1e-12);
+  scene.step(100);
+  CHECK(std::abs(energies(scene.model, scene.state).error) < 1e-9);
+}
+
 TEST_CASE("a box that slides to rest turns its energy into friction") {
   Scene scene;
   scene.add_box({-2, -1, -1}, {4, 2, 1}, true);

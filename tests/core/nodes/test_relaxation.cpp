@@ -1,4 +1,6 @@
 // The way to rest of a static stage: kinetic or adaptive.
+#include <vector>
+
 #include "core/diagnostics/energy.hpp"
 #include "core/diagnostics/unbalance.hpp"
 #include "core/nodes/masses.hpp"
@@ -75,6 +77,40 @@ TEST_CASE("energies close while scaled masses grow and shrink a thousandfold") {
   CHECK(s.dt == dt);
   CHECK(most > 0);
   CHECK(s.stopped_energy > 0);
+}
+
+TEST_CASE("scaled masses count contacts twice, those that may begin only at nodes without bonds") {
+  Hanging hanging;
+  Model& m = hanging.model;
+  State& s = hanging.state;
+  run(m, s, {.steps = 1, .relaxation = Relaxation::adaptive});
+  const auto masses = [&] {
+    renew_step(m, s);
+    const auto found = on_host(s.nodes.relax_mass);
+    return std::vector<Real>(found.begin(), found.end());
+  };
+  Real* const potential = on_host(s.node_potential).data();
+  Real* const bonds = on_host(s.node_bonds).data();
+  Real* const acting = on_host(s.nodes.force).data() + 3;  // of a node's row of 4
+  const Real spring = bonds[10];
+  CHECK(spring > 0);
+  const std::vector<Real> bare = masses();
+  const auto gained = [&](Index i, Real held, Real may_begin, Real acts) {
+    const Real before[] = {bonds[i], potential[i], acting[4 * i]};
+    bonds[i] = held, potential[i] = 0, acting[4 * i] = 0;
+    const Real without = masses()[i];
+    potential[i] = may_begin, acting[4 * i] = acts;
+    const Real with = masses()[i];
+    bonds[i] = before[0], potential[i] = before[1], acting[4 * i] = before[2];
+    return with - without;
+  };
+  // in units of what a bond of the same stiffness adds
+  const Real unit = gained(10, spring, 0.01 * spring, 0);
+  CHECK(unit > 0);
+  CHECK(relative_error(gained(10, spring, 0, 0.01 * spring), 2 * unit) < 1e-9);
+  CHECK(relative_error(gained(10, 0, 0, 0.01 * spring), 2 * unit) < 1e-9);
+  CHECK(relative_error(gained(10, 0, 0.01 * spring, 0), 2 * unit) < 1e-9);
+  CHECK(masses() == bare);
 }
 
 TEST_CASE("a node that becomes heavier keeps its momentum, a lighter one its velocity") {
