@@ -17,6 +17,7 @@ from cdem.model.curves import constant, hand_over
 from cdem.model.interfaces import bonded_pairs, interfaces_of
 from cdem.model.supports import held_components, supports_of
 from cdem.rows import rows_of
+from cdem.run.kept import bring_back, keep
 from cdem.run.state import RunState, Setting, StageState
 
 STATIC_RECORD_STEPS = 200
@@ -243,16 +244,14 @@ def _solved(sim: RunState) -> str:
             "relax: solve has no rest to find where loads.velocities move supports, so the stage goes "
             "on as adaptive"
         )
-    fields = {name: np.array(field) for name, field in sim.core.fields().items()}
-    numbers = sim.core.scalars()
+    state = keep(sim)
     rounds, iterations, before, after = sim.core.solve_for_rest(limit)
     if rounds > 0 and after < LEAST_GAIN * before:
         return (
             f"solved in {rounds} rounds and {iterations} iterations: unbalance ratio {before:.2g}, "
             f"then {after:.2g}"
         )
-    sim.core.restore(fields, numbers)
-    sim.core.prepare()
+    bring_back(sim, state)
     if before <= limit:
         return "begins at rest: nothing to solve"
     return "relax: solve found no rest nearby, so the stage goes on as adaptive"

@@ -14,6 +14,7 @@ from cdem.case.checks import SETTABLE
 from cdem.errors import CaseError
 from cdem.output.render import snapshot
 from cdem.run import stages
+from cdem.run.kept import bring_back, keep
 from cdem.run.simulation import Simulation
 from cdem.run.state import StageState
 from cdem.study.criterion import Criterion
@@ -24,8 +25,6 @@ from cdem.study.verdict import (
     UNKNOWN,
     Seen,
     Verdict,
-    bring_back,
-    keep,
     patience,
     rests,
     stage_rests,

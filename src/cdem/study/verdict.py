@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from cdem.errors import UnstableError
 from cdem.run import stages
+from cdem.run.kept import bring_back, keep
 from cdem.run.simulation import CHECK_INTERVAL, Simulation
 from cdem.run.state import StageState
 from cdem.study.criterion import Criterion
@@ -244,22 +245,3 @@ class _Watch:
     def _text(self, ways: Floats) -> str:
         speed = np.linalg.norm(self.sim.fields["velocity"], axis=1).max()
         return f"{self._place(ways)}, {speed:.2g} m/s"
-
-
-@dataclass
-class State:
-    """A state of the core."""
-
-    arrays: dict[str, np.ndarray]
-    scalars: dict[str, bool | int | float]
-
-
-def keep(sim: Simulation) -> State:
-    """A copy of the present state."""
-    return State({k: v.copy() for k, v in sim.core.fields().items()}, sim.core.scalars())
-
-
-def bring_back(sim: Simulation, state: State) -> None:
-    """Return to a state."""
-    sim.core.restore(state.arrays, state.scalars)
-    sim.core.prepare()
