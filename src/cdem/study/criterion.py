@@ -20,6 +20,10 @@ CHIP = 1e-4
 """Volume of a chip, over the volume of all groups that are not fixed, unless a user gives it."""
 
 
+OPTIONS = {"most_moved": "--travel", "ignore_below": "--ignore-below", "group": "--group"}
+"""Limits that have an option of their own."""
+
+
 class Criterion(Part):
     """Limits beyond which a case that has not come to rest has failed."""
 
@@ -71,7 +75,9 @@ class Criterion(Part):
             if not equals:
                 raise CaseError(f"--criterion {text}: write NAME=VALUE, e.g. far=0.5")
             values[name.strip()] = value.strip()
-            source.overrides[(name.strip(),)] = f"--criterion {text}"
+            option = OPTIONS.get(name.strip())
+            given = f"{option} {value.strip()}" if option else f"--criterion {text}"
+            source.overrides[(name.strip(),)] = given
         try:
             return cls(**values)  # type: ignore[arg-type]
         except ValidationError as error:

@@ -163,8 +163,7 @@ def _through(sim: Simulation, mine: NDArray[np.bool_], moved: Floats) -> list[Sl
     """Interfaces between a body and the other elements."""
     b, t = sim.build, sim.build.topology
     faces = np.concatenate([t.pair_faces, t.overlap_faces])
-    area = np.concatenate([face_areas(b.start_position, t.face_nodes[t.pair_faces[:, 0]]),
-                           _overlap_areas(sim)])  # fmt: skip
+    area = _areas(sim, faces)
     border = mine[t.face_element[faces]].sum(axis=1) == 1
     faces, area = faces[border], area[border]
     real = (t.face_nodes >= 0)[..., None]
@@ -181,11 +180,15 @@ def _through(sim: Simulation, mine: NDArray[np.bool_], moved: Floats) -> list[Sl
     return sorted(found, key=lambda s: -s.area)
 
 
-def _overlap_areas(sim: Simulation) -> Floats:
-    t = sim.build.topology
-    if not len(t.overlap_faces):
-        return np.zeros(0)
-    return np.add.reduceat(t.overlap_area, t.overlap_first[:-1])
+def _areas(sim: Simulation, faces: NDArray[np.int32]) -> Floats:
+    """Areas on which pairs of faces touched at the start [m2]; overlaps, if any, come last."""
+    b, t = sim.build, sim.build.topology
+    overlaps = len(t.overlap_faces)
+    conforming = faces[: len(faces) - overlaps, 0]
+    areas = face_areas(b.start_position, t.face_nodes[conforming])
+    if not overlaps:
+        return areas
+    return np.concatenate([areas, np.add.reduceat(t.overlap_area, t.overlap_first[:-1])])
 
 
 def lost_cohesion(sim: Simulation) -> dict[str, float]:
@@ -193,8 +196,7 @@ def lost_cohesion(sim: Simulation) -> dict[str, float]:
     b, t = sim.build, sim.build.topology
     faces, intact = bonds_of(sim)
     kept = ~sim.out[t.face_block[faces]].any(axis=1)
-    faces, intact = faces[kept], intact[kept]
-    area = face_areas(b.start_position, t.face_nodes[faces[:, 0]])
+    faces, intact, area = faces[kept], intact[kept], _areas(sim, faces)[kept]
     laws, table = interfaces_of(sim.case, b.group_names)
     law = table[t.face_kind[faces[:, 0]], t.face_kind[faces[:, 1]]]
     return {
