@@ -108,7 +108,7 @@ def stepped(name: str, friction: float, cohesion: float, quick: bool = False) ->
     b = np.radians(dip)
     factor = tan(friction) / tan(dip)
     factor += cohesion * count * (going - gap) / np.cos(b) / (weight * np.sin(b))
-    return Slope(name, top, case, float(factor), 0.1, quick)
+    return Slope(name, top, case, float(factor), quick=quick)
 
 
 def three_sets(name: str, height: float) -> Slope:
@@ -148,7 +148,7 @@ def bridged(name: str, part: float, quick: bool = False) -> Slope:
     case = static(name, {"blocks": blocks, "rotate": turn}, pairs, [sides(width)], rock(UNIT),
                   groups={"bridge": FIXED, "joint": FIXED})  # fmt: skip
     factor = tan(friction) / tan(dip) + part * bridge / (UNIT * thick * np.sin(b))
-    return Slope(name, length * np.sin(b), case, float(factor), 0.1, quick)
+    return Slope(name, length * np.sin(b), case, float(factor), quick=quick)
 
 
 def roof(name: str, quick: bool = False) -> Slope:
@@ -209,7 +209,7 @@ def columns(name: str, friction: float, support: float = 0.0) -> Slope:
         t = tan(friction) / factor  # the support, unlike a column, does not rub
         return float(support / 25e3 - g.support(t) * (1 - t**2))
 
-    return Slope(name, 92.5, case, root(balance, 0.5, 2.0), 0.1)
+    return Slope(name, 92.5, case, root(balance, 0.5, 2.0), 0.05)
 
 
 def flexural(name: str) -> Slope:
@@ -229,7 +229,7 @@ def flexural(name: str) -> Slope:
                   rock(UNIT), groups={"bed": FIXED},
                   loads={"gravity": [GRAVITY * np.sin(lean), 0, -GRAVITY * np.cos(lean)]})  # fmt: skip
     stress = UNIT * long * (3 * long / thick * np.sin(lean) - np.cos(lean))
-    return Slope(name, long, case, float(strength / stress), 0.1)
+    return Slope(name, long, case, float(strength / stress), 0.05)
 
 
 def bodies() -> list[Slope]:

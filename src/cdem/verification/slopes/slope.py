@@ -35,7 +35,7 @@ class Slope:
     height: float
     case: dict[str, Any]
     factor: float | tuple[float, float]
-    within: float = 0.05
+    within: float = 0.015
     quick: bool = False
     mesh: meshio.Mesh | None = None
 

@@ -117,7 +117,7 @@ def slope(
                   interfaces={"default": {"friction_angle": 30}})  # fmt: skip
     only = next(iter(soils))
     mesh = profile.mesh(rows, soil_at or (lambda middles: [only] * len(middles)))
-    return Slope(name, profile.height, case, factor, quick=quick, mesh=mesh)
+    return Slope(name, profile.height, case, factor, 0.05, quick, mesh=mesh)
 
 
 ACADS = Profile(10.0, 20.0, 20.0, 10.0, 5.0)
