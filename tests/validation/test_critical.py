@@ -12,8 +12,10 @@ from typer.testing import CliRunner
 import cdem
 from cdem.cli import app
 from cdem.errors import CaseError
+from cdem.run import stages
 from cdem.study.criterion import Criterion
 from cdem.study.critical import find_critical, find_factor, parameter, strength_reduction
+from cdem.study.verdict import patience
 
 SLOPE = 30.0  # [deg]
 
@@ -319,6 +321,30 @@ def test_a_column_that_sags_far_does_not_slide(modulus, within):
     found = find_factor(column, tolerance=0.5, threads=1)
     assert found.kept.trials[0].stable and found.kept.trials[0].steps < 100
     assert found.kept.value == pytest.approx(1e7 / tension, rel=within)
+
+
+def test_a_trial_waits_for_two_periods_of_a_column():
+    """Rayleigh's quotient of a bar that hangs in its own weight, u = x (2 L - x): w^2 = 5 E / (2 rho L^2).
+
+    Its error over the true first mode, w = pi c / (2 L), is 0.7 %.
+    """
+    length, rock = 60.0, {"density": 2500, "young_modulus": 1e9, "poisson_ratio": 0.0}
+    column = case(
+        [{"group": "bar", "box": {"size": [1, 1, length], "divisions": [1, 1, 120]}}],
+        {"bar": {}},
+        rock=rock,
+        loads={
+            "gravity": [0, 0, -9.81],
+            "supports": [
+                {"box": {"min": [-1, -1, -1], "max": [2, 2, 0.01]}, "fix": ["x", "y", "z"]}
+            ],
+        },
+        stages=[{"name": "rest", "mode": "static", "relax": "local"}],
+    )
+    sim = cdem.Simulation(column, threads=1)
+    stages.begin(sim)
+    period = 2 * math.pi * length * math.sqrt(2 * 2500 / (5 * 1e9))
+    assert patience(sim) == pytest.approx(2 * period / float(sim.core.scalars()["dt"]), rel=0.01)
 
 
 def test_nothing_holds_a_block_that_falls():

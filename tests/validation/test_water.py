@@ -442,3 +442,42 @@ def test_water_that_waits_for_a_stage_is_not_told(change, middle):
     bonded = {"default": {"friction_angle": 30, "cohesion": 1e6, "tensile_strength": 1e6}}
     sim = start(blocks, water=lake, stages=stages, interfaces=bonded)
     assert not any("water presses nowhere" in warning for warning in sim.audit.warnings)
+
+
+@pytest.mark.parametrize(
+    ("wet", "named", "presses"),
+    [(None, True, True), ("auto", True, True), ("broken", True, False), (None, False, False)],
+)
+def test_a_bonded_joint_of_a_set_is_wet_by_default(wet, named, presses):
+    """Water below a level h on both faces of an upright joint of width b: p g h / 2 on h b each.
+
+    A bonded joint between groups that has no name is dry until it breaks.
+    """
+    width, level = 2.0, 3.0
+    halves = [
+        {
+            "group": name,
+            "box": {"size": [2, width, 4], "divisions": [1, 1, 4]},
+            "translate": [x, 0, 0],
+        }
+        for name, x in (("left", 0), ("right", 2))
+    ]
+    whole = [{"group": "rock", "box": {"size": [4, width, 4], "divisions": [2, 1, 4]}}]
+    joints = [{"name": "crack", "dip": 90, "dip_direction": 90, "origin": [2, 1, 2]}]
+    strong = {"friction_angle": 30, "cohesion": 1e6, "tensile_strength": 1e6}
+    field = {"name": "table", "level": level} | ({"wet": wet} if wet else {})
+    groups = ["rock"] if named else ["left", "right"]
+    this = cdem.Case(
+        model={"blocks": whole, "joints": joints} if named else {"blocks": halves},
+        materials={"rock": {"density": 2700, "young_modulus": 1e10, "poisson_ratio": 0.25}},
+        groups={name: {"material": "rock", "fix": ["x", "y", "z"]} for name in groups},
+        interfaces={"default": strong, "pairs": [strong | {"joint": "crack"}] if named else []},
+        loads={"gravity": [0, 0, -9.81]},
+        water={"fields": [field]},
+        stages=[{"name": "rest", "mode": "static"}],
+    )
+    sim = cdem.Simulation(this, threads=1)
+    water = rows_of(sim.core, "node.water").force
+    pushed = 1000 * 9.81 * level**2 / 2 * width
+    found = water[water[:, 0] > 0, 0].sum()
+    assert found == pytest.approx(pushed if presses else 0.0, rel=1e-6)
