@@ -55,7 +55,7 @@ def check_model(
             f"with "
             "output.maps of the run"
         )
-    own = {"simulation.reference", "simulation.born"}  # see RunState.kept
+    own = {"simulation.reference", "simulation.watched", "simulation.born"}  # see RunState.kept
     own |= {name for name in arrays if name.startswith(PREFIX)}
     other = set(arrays) - own | set(attributes.core)
     other ^= set(run.core.fields()) | set(run.core.scalars())
@@ -101,6 +101,8 @@ def wrong_stage(attributes: Attributes) -> str:
     begun = attributes.stage is not None or attributes.ended_stage is not None
     if begun != (index > 0 or attributes.stage is not None or attributes.core["step"] > 0):
         return "it is neither in a stage nor after one"
+    if (stage := attributes.stage) and len(stage.ways) != len(stage.ratios):
+        return "its looks at the stage are not whole"
     for place, kept in ((index, attributes.stage), (index - 1, attributes.ended_stage)):
         if kept is not None and (place < 0 or kept.name != stages[place]["name"]):
             return f"its stage {kept.name!r} has another name in the case"

@@ -220,6 +220,7 @@ def release_part(sim: RunState, stage: StageState) -> bool:
     share = stage.parts / release.parts
     sim.core.release_forces(stage.held + share * (1 - release.to - stage.held), sim.time)
     stage.solved = ""
+    stage.watch_anew()
     return True
 
 
@@ -276,6 +277,7 @@ def relax_locally(sim: RunState, stage: StageState) -> tuple[str, int, float]:
         "by relax: local"
     )
     stage.handed_over = True
+    stage.watch_anew()
     sim.core.leave_adaptive()
     report = sim.core.run(1, relaxation="kinetic")  # this stops all motion
     damp_locally(sim)

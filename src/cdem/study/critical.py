@@ -14,21 +14,14 @@ from cdem.case.checks import SETTABLE
 from cdem.errors import CaseError
 from cdem.output.render import snapshot
 from cdem.run import stages
+from cdem.run.behaviour import LEAST_STEPS, UNKNOWN, patience
 from cdem.run.kept import bring_back, keep
+from cdem.run.moving import Body, lost_cohesion
 from cdem.run.simulation import Simulation
 from cdem.run.state import StageState
 from cdem.study.criterion import Criterion
-from cdem.study.moving import Body, lost_cohesion
 from cdem.study.strengths import HELD, StrengthReduction, keep_strengths
-from cdem.study.verdict import (
-    LEAST_STEPS,
-    UNKNOWN,
-    Seen,
-    Verdict,
-    patience,
-    rests,
-    stage_rests,
-)
+from cdem.study.verdict import Seen, Verdict, rests, stage_rests
 
 if TYPE_CHECKING:
     from cdem.model.audit import Audit
