@@ -91,6 +91,12 @@ def wrong_kept(arrays: Mapping[str, NDArray], own: Mapping[str, NDArray]) -> str
     return ""
 
 
+def wrong_looks(attributes: Attributes) -> str:
+    """Fault of the looks at the present stage, or ""."""
+    stage = attributes.stage
+    return "its looks are not whole" if stage and len(stage.ways) != len(stage.ratios) else ""
+
+
 def wrong_stage(attributes: Attributes) -> str:
     """Fault of the present stage, or ""."""
     index, stages = attributes.stage_index, attributes.case.get("stages", [])
@@ -101,8 +107,6 @@ def wrong_stage(attributes: Attributes) -> str:
     begun = attributes.stage is not None or attributes.ended_stage is not None
     if begun != (index > 0 or attributes.stage is not None or attributes.core["step"] > 0):
         return "it is neither in a stage nor after one"
-    if (stage := attributes.stage) and len(stage.ways) != len(stage.ratios):
-        return "its looks at the stage are not whole"
     for place, kept in ((index, attributes.stage), (index - 1, attributes.ended_stage)):
         if kept is not None and (place < 0 or kept.name != stages[place]["name"]):
             return f"its stage {kept.name!r} has another name in the case"

@@ -464,7 +464,8 @@ class Simulation(RunState):
         assert self.results is not None
         path, arrays, attributes = self.results.read_checkpoint()
         restored.check_model(self, path, arrays, attributes, force=force)
-        if fault := restored.wrong_stage(attributes) or restored.wrong_numbers(self, attributes):
+        fault = restored.wrong_stage(attributes) or restored.wrong_looks(attributes)
+        if fault := fault or restored.wrong_numbers(self, attributes):
             raise CdemError(f"{path}: is damaged ({fault}); run the case again with --overwrite")
         begun = attributes.stage_index + (attributes.stage is not None)
         try:
