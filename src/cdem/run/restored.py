@@ -92,9 +92,11 @@ def wrong_kept(arrays: Mapping[str, NDArray], own: Mapping[str, NDArray]) -> str
 
 
 def wrong_looks(attributes: Attributes) -> str:
-    """Fault of the looks at the present stage, or ""."""
-    stage = attributes.stage
-    return "its looks are not whole" if stage and len(stage.ways) != len(stage.ratios) else ""
+    """Fault of the looks at a static stage, or ""."""
+    for stage in (attributes.stage, attributes.ended_stage):
+        if stage is not None and len(stage.ways) != len(stage.ratios):
+            return "its looks at a stage are not whole"
+    return ""
 
 
 def wrong_stage(attributes: Attributes) -> str:
