@@ -14,6 +14,7 @@ namespace cdem {
 
 struct Bolts;
 struct Model;
+struct NodeSpring;
 struct State;
 
 /// Bolts: chains of nodes, each located in an element of the rock. Points are the nodes of all

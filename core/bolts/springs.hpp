@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "core/bolts/solve_bolts.hpp"
-#include "core/records/module_ports.hpp"
+#include "core/records/node_spring.hpp"
 
 namespace cdem {
 

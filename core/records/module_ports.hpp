@@ -1,7 +1,7 @@
 // module_ports.hpp - how, and when in a step, a module acts on nodes.
 #pragma once
 
-#include "core/base/math.hpp"
+#include "core/base/lanes.hpp"
 
 namespace cdem {
 
@@ -9,16 +9,6 @@ namespace cdem {
 struct NodeDashpot {
   Index node;
   Real matrix[6];
-};
-
-/// A spring between two places, each a mean of nodes, as a solve for rest sees it.
-struct NodeSpring {
-  static constexpr Index most = 16;
-  Index count = 0;
-  Index node[most];
-  Real weight[most];   // of the second place, less that of the first
-  Vec3<Real> axis;     // of unit length
-  Real normal, shear;  // along the axis, and across it  [N/m]
 };
 
 /// How the forces of a module come to nodes.

@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "core/base/math.hpp"
-#include "core/records/module_ports.hpp"
+#include "core/records/node_spring.hpp"
 
 namespace cdem {
 

@@ -128,7 +128,10 @@ def test_a_block_that_only_bolts_hold_is_left_to_steps():
         rests,
         blocks=blocks,
         groups={"rock": {}, "top": {}},
-        interfaces={"default": {"friction_angle": 40}, "pairs": [BOND | {"between": ["rock", "rock"]}]},
+        interfaces={
+            "default": {"friction_angle": 40},
+            "pairs": [BOND | {"between": ["rock", "rock"]}],
+        },
         loads={"gravity": [0, 0, 9.81]},
         bolt_types={"bar": bar},
         bolts=[{"name": "b", "type": "bar", "points": [[1.5, 1.5, 3.0], [1.5, 1.5, 0.1]]}],
