@@ -10,7 +10,6 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from cdem.case.curve_times import last_change
 from cdem.run import stages
 from cdem.run.kept import bring_back, keep
 from cdem.run.moving import Body, moving_bodies
@@ -158,7 +157,7 @@ def look(sim: RunState, stage: StageState) -> NoRest | None:
     of this must be true after the wait of `patience` as well, or four times that where nothing has
     moved by a face.
     """
-    if sim.time < sim.begins[stage.name] + last_change(sim.case, stage.name):
+    if stages.curves_run(sim, stage):
         stage.watch_anew()
         return None
     ways, size = ways_from(sim, sim.watched), face_size(sim)

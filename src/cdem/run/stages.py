@@ -232,10 +232,10 @@ def solve_is_due(sim: RunState, stage: StageState) -> bool:
     case = sim.case
     if case.stages[sim.stage_index].relax != "solve" or case.loads.velocities:
         return False
-    return not (stage.solved or stage.handed_over or _curves_run(sim, stage))
+    return not (stage.solved or stage.handed_over or curves_run(sim, stage))
 
 
-def _curves_run(sim: RunState, stage: StageState) -> bool:
+def curves_run(sim: RunState, stage: StageState) -> bool:
     """Whether curves still change a static stage: it has no rest before they are over."""
     return sim.time < sim.begins[stage.name] + last_change(sim.case, stage.name)
 
@@ -348,7 +348,7 @@ def advance(sim: RunState, stage: StageState, steps: int, until: float) -> tuple
         if solve_is_due(sim, stage):
             solve(sim, stage)
         over = sim.begins[stage.name] + last_change(sim.case, stage.name)
-        changes = _curves_run(sim, stage)
+        changes = curves_run(sim, stage)
         report = sim.core.run(
             steps,
             end_time=min(until, over) if changes else until,
