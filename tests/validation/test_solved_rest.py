@@ -61,7 +61,9 @@ def test_a_slender_cantilever_is_solved_for():
     beam = {"group": "rock", "box": {"size": [12, 1, 1], "divisions": [12, 1, 1], "shape": "tet4"}}
     wall = {"box": {"min": [-1e-6, -9, -9], "max": [1e-6, 9, 9]}, "fix": ["x", "y", "z"]}
     loads = {"gravity": [0, 0, -9.81], "supports": [wall]}
-    solve, adaptive = (rests(way, [beam], loads=loads, tolerance=1e-5) for way in ("solve", "adaptive"))
+    solve, adaptive = (
+        rests(way, [beam], loads=loads, tolerance=1e-5) for way in ("solve", "adaptive")
+    )
     assert solve.step_count <= 20 < adaptive.step_count
     sag = [-sim.fields["displacement"][:, 2].min() for sim in (solve, adaptive)]
     assert sag[0] == pytest.approx(sag[1], rel=1e-3)
