@@ -76,6 +76,16 @@ def compiler() -> str:
     sys.exit(f"no nvcc: install the CUDA toolkit, or: .venv/bin/pip install {WHEELS}")
 
 
+def refuse_layouts() -> None:
+    """End where the two compilers of nvcc may give a kernel different layouts.
+
+    With `[[no_unique_address]]` (13.0) the host packs arguments that a GPU then reads elsewhere.
+    """
+    for path in sorted((build.ROOT / "core").rglob("*.[ch]pp")):
+        if "no_unique_address" in path.read_text():
+            sys.exit(f"{path}: [[no_unique_address]] is laid out differently for host and GPU")
+
+
 def compile_core(folder: Path, ptx: bool) -> bytes:
     """Compile the core; its kernels, in which the PTX is text."""
     settings = {
@@ -174,6 +184,7 @@ def main() -> None:
     parser.add_argument("--ptx", action="store_true", help="machine code only where it is checked")
     ptx = parser.parse_args().ptx
     folder = build.ROOT / "build" / ("ptx" if ptx else "cuda")
+    refuse_layouts()
     code = compile_core(folder, ptx)
     found, count = needs(code)
     if problems := faults(found, code):

@@ -40,7 +40,7 @@ class Column {
   void renew(std::size_t size) {
     if (size > capacity_) {
       Column().swap(*this);
-      take(size + size / 8);  // the next time it may be a little longer
+      take(spare ? size + size / 8 : size);  // the next time it may be a little longer
     }
     size_ = size;
   }
@@ -62,9 +62,17 @@ class Column {
   }
 
  private:
-  std::size_t grown(std::size_t size) const { return size > 2 * capacity_ ? size : 2 * capacity_; }
+  // The emulated device tells of items past the end.
+#if defined(CDEM_EMULATED)
+  static constexpr bool spare = false;
+#else
+  static constexpr bool spare = true;
+#endif
+  std::size_t grown(std::size_t size) const {
+    return size > 2 * capacity_ || !spare ? size : 2 * capacity_;
+  }
   void take(std::size_t capacity) {
-    data_ = static_cast<T*>(allocate((capacity + 16) * sizeof(T)));
+    data_ = static_cast<T*>(allocate((capacity + (spare ? 16 : 0)) * sizeof(T)));
     capacity_ = capacity;
   }
   void reserve(std::size_t capacity) {

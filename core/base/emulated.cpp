@@ -6,7 +6,6 @@
 #include <cxxabi.h>
 #include <dlfcn.h>
 #include <execinfo.h>
-#include <pthread.h>
 #include <sys/mman.h>
 #include <unistd.h>
 
@@ -16,12 +15,15 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <deque>
 #include <map>
 #include <new>
 #include <numeric>
 #include <random>
 #include <stdexcept>
 #include <string>
+#include <utility>
+#include <vector>
 
 // Of the library: from its first byte to its last.
 extern "C" __attribute__((visibility("hidden"))) const char __ehdr_start[], _end[];
@@ -45,11 +47,12 @@ struct Word {
 /// Accesses seen while a kernel runs. Hooks and handler use plain memory only: what they call must
 /// not call them.
 struct Watch {
-  char* arena;      // arrays
-  Word* words;      // one for 8 bytes of the arena
-  std::size_t top;  // of the arena
+  char* arena;       // arrays
+  Word* words;       // one for 8 bytes of the arena
+  std::size_t* end;  // of the array on each page, or 0
+  std::size_t top;   // of the arena
   std::uint32_t launch, item;
-  const char* stack_end;  // of the thread that launches
+  const char* stack_end;  // of a launch: where its work ends
   bool in_run;
   struct {
     const void* instruction;
@@ -104,6 +107,8 @@ inline void touch(const void* memory, std::size_t size, Way way, const void* ins
     if (watch.in_run && !is_own(address)) note(instruction, "touches memory of the host");
     return;
   }
+  if (first + size > watch.end[first / page])
+    return note(instruction, "touches memory of no array");
   for (std::size_t at = first; at < first + size;) {
     const std::size_t in_word = at % 8, here = std::min(8 - in_word, first + size - at);
     touch_word(watch.words[at / 8], ((1u << here) - 1) << in_word, way, instruction);
@@ -119,12 +124,26 @@ struct Host {
   struct sigaction action_before{};
   std::int64_t launches = 0, waits = 0, transfers_made = 0;
   bool in_flight = false;  // was anything launched since the last wait?
+  bool queues = true;
+  std::string fault;
   std::map<char*, std::size_t> taken;
   std::multimap<std::size_t, char*> free;
   std::mt19937 random;
 };
 Host& host() {
   static Host one;
+  return one;
+}
+
+/// A launch that waits for its turn.
+struct Launch {
+  Index count;
+  const char* kernel;
+  void (*run)(const void* work, Index i);
+  std::vector<char> work;
+};
+std::deque<Launch>& queued() {
+  static std::deque<Launch> one;
   return one;
 }
 
@@ -199,9 +218,13 @@ void* reserve(std::size_t size) {
 
 void start() {
   watch.arena = static_cast<char*>(reserve(arena_size));
-  const std::size_t size = arena_size / 8 * sizeof(Word);
-  watch.words = static_cast<Word*>(reserve(size));
-  mprotect(watch.words, size, PROT_READ | PROT_WRITE);
+  const auto take = [](std::size_t bytes) {
+    void* const memory = reserve(bytes);
+    mprotect(memory, bytes, PROT_READ | PROT_WRITE);
+    return memory;
+  };
+  watch.words = static_cast<Word*>(take(arena_size / 8 * sizeof(Word)));
+  watch.end = static_cast<std::size_t*>(take(arena_size / page * sizeof *watch.end));
   const char* seed = std::getenv("CDEM_EMULATED_SEED");
   host().random.seed(seed ? std::uint32_t(std::strtoul(seed, nullptr, 10)) : 1);
   const char* given = std::getenv("CDEM_EMULATED_HOST");
@@ -211,19 +234,6 @@ void start() {
                                      : HostWatch::none;
   void* one;
   backtrace(&one, 1);  // loads its library before a handler calls it
-}
-
-const char* end_of_stack() {
-  static thread_local const char* end = [] {
-    pthread_attr_t attributes;
-    void* first = nullptr;
-    std::size_t size = 0;
-    pthread_getattr_np(pthread_self(), &attributes);
-    pthread_attr_getstack(&attributes, &first, &size);
-    pthread_attr_destroy(&attributes);
-    return static_cast<const char*>(first) + size;
-  }();
-  return end;
 }
 
 /// A fault of a kernel.
@@ -238,6 +248,39 @@ std::string told(const char* kernel) {
   return text;
 }
 
+void run(const Launch& one) {
+  std::vector<Index> order(static_cast<std::size_t>(one.count));
+  std::iota(order.begin(), order.end(), 0);
+  std::shuffle(order.begin(), order.end(), host().random);
+  char* const work = static_cast<char*>(__builtin_alloca_with_align(one.work.size(), 8 * 64));
+  std::memcpy(work, one.work.data(), one.work.size());  // kernels may read their stack
+  ++watch.launch;
+  watch.item = 0, watch.fault = {}, watch.stack_end = work + one.work.size();
+  launching = true;
+  open_or_close();
+  for (const Index i : order) ++watch.item, one.run(work, i);
+  launching = false;
+  open_or_close();
+}
+
+/// Run what was launched, up to the first fault, which `finish` tells.
+void run_queued() {
+  while (!queued().empty() && host().fault.empty()) {
+    const Launch one = std::move(queued().front());
+    queued().pop_front();
+    run(one);
+    if (watch.fault.what) host().fault = told(one.kernel);
+  }
+}
+
+}  // namespace
+
+namespace {
+/// An array on these pages ends after so many bytes.
+void set_ends(const char* memory, std::size_t size, std::size_t bytes) {
+  const std::size_t first = std::size_t(memory - watch.arena);
+  std::fill_n(&watch.end[first / page], size / page, bytes > 0 ? first + bytes : 0);
+}
 }  // namespace
 
 void* allocate_answer(std::size_t bytes) { return allocate(bytes); }
@@ -251,20 +294,26 @@ void* allocate(std::size_t bytes) {
     host().free.erase(same);
     madvise(memory, size, MADV_DONTNEED);  // zeros again
   } else {
-    if (watch.top + size > arena_size) throw std::bad_alloc();
-    watch.top += size;
-    if (host().open) mprotect(memory, size, PROT_READ | PROT_WRITE);
+    if (watch.top + size + page > arena_size) throw std::bad_alloc();
+    watch.top += size + page;  // a page of no array behind it
+    if (host().open) mprotect(memory, size + page, PROT_READ | PROT_WRITE);
   }
   host().taken[memory] = size;
+  set_ends(memory, size, bytes);
   return memory;
 }
 void release(void* memory) {
   if (!memory) return;
+  run_queued();  // they may be using it
   const auto one = host().taken.find(static_cast<char*>(memory));
   host().free.emplace(one->second, one->first);
+  set_ends(one->first, one->second, 0);
   host().taken.erase(one);
 }
 void finish(Queue) {
+  run_queued();
+  queued().clear();
+  if (!host().fault.empty()) throw std::logic_error(std::exchange(host().fault, {}));
   host().waits += host().in_flight;
   host().in_flight = false;
 }
@@ -288,19 +337,17 @@ Transfer::Transfer() { ++host().transfers, ++host().transfers_made, open_or_clos
 Transfer::~Transfer() { --host().transfers, open_or_close(); }
 
 void launch(Index count, const char* kernel, void (*run)(const void* work, Index i),
-            const void* work) {
-  std::vector<Index> order(static_cast<std::size_t>(count));
-  std::iota(order.begin(), order.end(), 0);
-  std::shuffle(order.begin(), order.end(), host().random);
-  ++host().launches, ++watch.launch;
+            const void* work, std::size_t bytes) {
+  const char* const first = static_cast<const char*>(work);
+  ++host().launches;
   host().in_flight = true;
-  watch.item = 0, watch.fault = {}, watch.stack_end = end_of_stack();
-  launching = true;
-  open_or_close();
-  for (const Index i : order) ++watch.item, run(work, i);
-  launching = false;
-  open_or_close();
-  if (watch.fault.what) throw std::logic_error(told(kernel));
+  queued().push_back({count, kernel, run, {first, first + bytes}});
+  if (!host().queues) finish({});
+}
+
+void queue_launches(bool yes) {
+  finish({});
+  host().queues = yes;
 }
 
 Seen seen() {

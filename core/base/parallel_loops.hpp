@@ -4,6 +4,7 @@
 // stage, as C++ for the CPU or as CUDA for a GPU.
 #pragma once
 
+#include <type_traits>
 #include <typeinfo>
 
 #include "core/base/any_item.hpp"
@@ -81,10 +82,11 @@ void for_each_item(Queue queue, Index count, Blocks blocks, const Kernel& kernel
 
 /// Launch the work of a copy of a kernel, which is all that a device has of it.
 template <class Kernel, class Work>
-void launch(Index count, const Kernel kernel, const Work& work) {
-  const auto own = [&](Index i) { work(kernel, i); };
+void launch(Index count, const Kernel& kernel, const Work& work) {
+  const auto own = [kernel, work](Index i) { work(kernel, i); };
+  static_assert(std::is_trivially_destructible_v<decltype(own)>);
   const auto run = [](const void* of, Index i) { (*static_cast<decltype(own)*>(of))(i); };
-  if (count > 0) launch(count, typeid(Kernel).name(), run, &own);
+  if (count > 0) launch(count, typeid(Kernel).name(), run, &own, sizeof own);
 }
 
 template <class Kernel>
@@ -107,7 +109,7 @@ void for_each_selected(Queue, Index count, const Kernel& kernel) {
 
 template <class Kernel>
 void for_each_lane(Queue, Index count, Blocks blocks, const Kernel& kernel) {
-  launch(blocks.count_in(count) * block_size, kernel, [&](const Kernel& own, Index place) {
+  launch(blocks.count_in(count) * block_size, kernel, [=](const Kernel& own, Index place) {
     const Index i = blocks.first(place / block_size) + place % block_size;
     if (i < count) own(One{i});
   });

@@ -135,7 +135,7 @@ void visit_nodes(const Tiles& tiles, Blocks blocks, Range some, const Act& act) 
 /// A tile is an item: its threads wait for each other.
 template <class Kernel>
 void for_each_tile(Queue, Index count, Blocks blocks, const Tiles& tiles, const Kernel& kernel) {
-  launch(tiles.count, kernel, [&](const Kernel& own, Index tile) {
+  launch(tiles.count, kernel, [=](const Kernel& own, Index tile) {
     const Range some = blocks.between(tiles.block_first[tile], tiles.block_first[tile + 1]);
     if (some.first == some.last) return;
     alignas(64) Real motion[8 * most_tile_nodes], force[4 * most_tile_nodes];

@@ -78,7 +78,7 @@ struct MoveNodes {
   Real* work_damping;         // [node] taken out by damping so far  [J]
   Real* step_change;          // [node] hidden by changes of the step so far  [J]; null where this
                               // step is as long as the last one
-  [[no_unique_address]] Dashing ground{};
+  Dashing ground{};
 
   CDEM_HD void operator()(One node) const {
     const Index i = node.i;

@@ -78,12 +78,13 @@ Real largest_eigenvalue(const BlockRows& a, const std::vector<Real>& inverse) {
   Column<Real> x, y;
   x.resize(numbers);
   y.resize(numbers);
-  const auto at_x = on_host(x), at_y = on_host(y);
+  const auto start = on_host(x);
   for (Index i = 0; i < numbers; ++i)  // has a part of every mode
-    at_x[i] = (i % 2 ? -1.0 : 1.0) * (1 + Real(i * std::int64_t(7919) % 101) / 101);
+    start[i] = (i % 2 ? -1.0 : 1.0) * (1 + Real(i * std::int64_t(7919) % 101) / 101);
   Real largest = 0;
   for (int turn = 0; turn < 12; ++turn) {
     multiply({}, a, x.data(), y.data());
+    const auto at_x = on_host(x), at_y = on_host(y);
     Real square = 0, before = 0;
     for (Index i = 0; i < numbers; ++i) before += at_x[i] * at_x[i];
     for (Index r = 0; r < a.rows(); ++r)

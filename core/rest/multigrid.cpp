@@ -68,20 +68,21 @@ void smooth(Queue q, const Level& level, const Real* r, Real* x) {
 /// A weight at which smoothing converges, from the largest eigenvalue of B^-1 A.
 Real weight_of(Level& level) {
   const Index numbers = level.matrix.rows() * level.matrix.height;
-  const auto x = on_host(level.x), right = on_host(level.right);
+  const auto start = on_host(level.x);
   for (Index i = 0; i < numbers; ++i)
-    x[i] = (i % 2 ? -1.0 : 1.0) * (1 + Real(i * std::int64_t(7919) % 101) / 101);
+    start[i] = (i % 2 ? -1.0 : 1.0) * (1 + Real(i * std::int64_t(7919) % 101) / 101);
   level.weight = 1;
   Real largest = 1;
   for (int turn = 0; turn < 10; ++turn) {
-    Real before = 0, after = 0;
-    for (Index i = 0; i < numbers; ++i) before += x[i] * x[i];
-    for (Index i = 0; i < numbers; ++i) x[i] /= std::sqrt(before);
+    const auto before = on_host(level.x);
+    Real square = 0, after = 0;
+    for (Index i = 0; i < numbers; ++i) square += before[i] * before[i];
+    for (Index i = 0; i < numbers; ++i) before[i] /= std::sqrt(square);
     multiply({}, level.matrix, level.x.data(), level.left.data());
-    for (Index i = 0; i < numbers; ++i) right[i] = 0;
-    smooth({}, level, level.left.data(), level.right.data());
-    for (Index i = 0; i < numbers; ++i) after += right[i] * right[i];
-    for (Index i = 0; i < numbers; ++i) x[i] = right[i];
+    set_all({}, numbers, level.x.data(), 0.0);
+    smooth({}, level, level.left.data(), level.x.data());
+    const auto x = on_host(level.x);
+    for (Index i = 0; i < numbers; ++i) after += x[i] * x[i];
     if (!(after > 0)) break;
     largest = std::sqrt(after);
   }

@@ -51,6 +51,7 @@ class Trial:
             its own last stage if each trial builds its model [m].
         bodies: Bodies that move where it fails, the largest first.
         chips: Bodies too small to count, which moved and were taken out.
+        sure: Whether it was watched as long as the criterion asks, see `Verdict`.
     """
 
     value: float
@@ -61,6 +62,7 @@ class Trial:
     moved: float
     bodies: list[Body] = field(default_factory=list)
     chips: list[Body] = field(default_factory=list)
+    sure: bool = True
 
     def as_dict(self) -> dict[str, Any]:
         """All values, ready for JSON."""
@@ -99,6 +101,12 @@ class Critical:
     def value(self) -> float:
         """The middle of the bracket."""
         return 0.5 * (self.stable + self.failed)
+
+    def nearest_failure(self) -> float:
+        """The value next to `stable` whose last trial failed, or nan."""
+        last = {t.value: t.stable for t in self.trials}
+        failed = [value for value, stable in last.items() if not stable]
+        return min(failed, key=lambda value: abs(value - self.stable), default=np.nan)
 
     def as_dict(self) -> dict[str, Any]:
         """All results, ready for JSON."""
@@ -172,9 +180,10 @@ def find_critical(
     """Bisect between a value at which a case rests and one at which it fails.
 
     All stages except the last prepare the case with its own values. Each trial sets the value and
-    runs
-    the last stage, which must be static, from the state of the last stable trial. It is stable when
-    the unbalance ratio falls below the stage's tolerance, and has failed according to `criterion`.
+    runs the last stage, which must be static, from the state of the last stable trial. It is stable
+    when the unbalance ratio falls below the stage's tolerance, and has failed according to
+    `criterion`. A trial ends as soon as a body slides; only the failure next to the critical value
+    is watched until it has moved by `travel`, and where it comes to rest after all, the search goes on.
 
     If each value of a `parameter` makes another model (its geometry, its rock), each trial builds
     the model and runs all stages; every static stage must then come to rest.
@@ -203,27 +212,42 @@ def find_critical(
     found = Critical(np.nan, np.nan, criterion)
     step = partial(_attempt, search, found, report)
     if between:
-        _try_ends(between, step)
+        _try_ends(between, partial(step, hasty=False))
     else:
-        _widen(step, *first)
+        _widen(partial(step, hasty=True), *first)
     search.begin_bisection()
-    while abs(found.stable - found.failed) > tolerance:
-        step(found.value)
+    _narrow(found, step, tolerance)
     found.broken, found.audit = search.broken_at_rest(), search.sim.audit
     return found
 
 
-def _attempt(search: _Warm | _Cold, found: Critical, report: Report | None, value: float) -> Trial:
+def _attempt(
+    search: _Warm | _Cold, found: Critical, report: Report | None, value: float, *, hasty: bool
+) -> Trial:
     """Try a value and put it into the bracket."""
-    trial = search.attempt(value)
+    trial = search.attempt(value, hasty=hasty)
     found.trials.append(trial)
     if trial.stable:
         found.stable = value
+        found.failed = found.nearest_failure()
     else:
         found.failed, found.body = value, snapshot(search.sim)
     if report:
         report(found)
     return trial
+
+
+def _narrow(found: Critical, step: Callable[..., Trial], tolerance: float) -> None:
+    """Bisect until the bracket is narrow and its failure is sure."""
+    hasty = True
+    while True:
+        while abs(found.stable - found.failed) > tolerance:
+            step(found.value, hasty=hasty)
+        if found.trial_that_failed.sure:
+            return
+        hasty = not step(found.failed, hasty=False).stable  # if it rests, so may others
+        if np.isnan(found.failed):
+            _widen(partial(step, hasty=False), found.stable * WIDER, found.stable * WIDER**2)
 
 
 def _try_ends(between: tuple[float, float], step: Callable[[float], Trial]) -> None:
@@ -378,7 +402,7 @@ class _Warm:
         bring_back(self.sim, self.at_rest)
         return lost_cohesion(self.sim)
 
-    def attempt(self, value: float) -> Trial:
+    def attempt(self, value: float, *, hasty: bool) -> Trial:
         sim = self.sim
         bring_back(sim, self.at_rest if self.bisecting else self.start)
         before = sim.step_count
@@ -389,7 +413,7 @@ class _Warm:
             stage = self._begin(value)
             self.wait = self.wait or patience(sim) or UNKNOWN
         assert self.wait
-        verdict = rests(sim, stage, self.criterion, self.wait, self.from_where)
+        verdict = rests(sim, stage, self.criterion, self.wait, self.from_where, hasty=hasty)
         if verdict.stable:
             self.at_rest = keep(sim)
         return _trial(value, verdict, sim.step_count - before)
@@ -416,7 +440,7 @@ class _Cold:
         """Nothing: the model of the last stable trial is gone."""
         return {}
 
-    def attempt(self, value: float) -> Trial:
+    def attempt(self, value: float, *, hasty: bool) -> Trial:
         case = self.case.model_copy(deep=True)
         self.apply(case, value)
         sim = self.sim = Simulation(case, threads=self.threads)
@@ -427,7 +451,7 @@ class _Cold:
         verdict = Verdict(True, "at rest", "")
         for index, rules in enumerate(case.stages):
             if rules.mode == "static":
-                verdict = stage_rests(sim, self.criterion, index)
+                verdict = stage_rests(sim, self.criterion, index, hasty=hasty)
                 sim.stage_index, sim.stage = index + 1, None
             else:
                 sim.run_stage(rules.name)
@@ -440,4 +464,4 @@ class _Cold:
 
 def _trial(value: float, verdict: Verdict, steps: int) -> Trial:
     v = verdict
-    return Trial(value, v.stable, v.saw, v.why, steps, v.moved, v.bodies, v.chips)
+    return Trial(value, v.stable, v.saw, v.why, steps, v.moved, v.bodies, v.chips, v.sure)

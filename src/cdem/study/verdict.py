@@ -51,6 +51,8 @@ class Verdict:
             positions [m].
         bodies: What moves, where it has failed: the largest first.
         chips: Smaller bodies that moved, and were taken out of the model.
+        sure: Whether it was watched as long as the criterion asks; else a body slides that may yet
+            come to rest on what it meets.
     """
 
     stable: bool
@@ -59,6 +61,7 @@ class Verdict:
     moved: float = np.nan
     bodies: list[Body] = field(default_factory=list)
     chips: list[Body] = field(default_factory=list)
+    sure: bool = True
 
 
 def patience(sim: Simulation) -> int | None:
@@ -94,17 +97,21 @@ def patience(sim: Simulation) -> int | None:
     return max(LEAST_STEPS, math.ceil(PERIODS * 2 * math.pi * math.sqrt(heavy / energy) / step))
 
 
-def stage_rests(sim: Simulation, criterion: Criterion | None = None, index: int = -1) -> Verdict:
+def stage_rests(
+    sim: Simulation, criterion: Criterion | None = None, index: int = -1, *, hasty: bool = False
+) -> Verdict:
     """Begin a static stage, by default the last, and run it until it rests or fails.
 
     Args:
         sim: The simulation; stages between are left out.
         criterion: Criterion of failure.
         index: Index of the stage.
+        hasty: As in `rests`.
     """
     sim.stage_index = range(len(sim.case.stages))[index]
     stage, criterion = stages.begin(sim), criterion or Criterion()
-    return rests(sim, stage, criterion, criterion.stall_steps or patience(sim) or UNKNOWN)
+    wait = criterion.stall_steps or patience(sim) or UNKNOWN
+    return rests(sim, stage, criterion, wait, hasty=hasty)
 
 
 def rests(
@@ -113,6 +120,8 @@ def rests(
     criterion: Criterion,
     wait: int,
     start: Floats | None = None,
+    *,
+    hasty: bool = False,
 ) -> Verdict:
     """Run a static stage that has begun until it rests or fails by the criterion.
 
@@ -123,6 +132,8 @@ def rests(
         wait: Steps after which the unbalanced force is judged.
         start: Origin of displacements for the check of rest [m], shape (nodes, 3); None:
             present positions.
+        hasty: Whether to end where a body slides that has not moved by `travel` yet: such a
+            failure is not sure.
     """
     c, chips = criterion, list[Body]()
     watch = _Watch(sim, c, wait, start)
@@ -136,11 +147,13 @@ def rests(
         if outcome == "converged":
             return watch.rest(chips)
         verdict = watch.look()
-        if verdict is None:
+        if verdict is None or not (verdict.sure or hasty):
             continue
         verdict.bodies, verdict.chips = watch.bodies(), chips
         if not verdict.bodies or any(c.counts(sim, body) for body in verdict.bodies):
             return verdict
+        if not verdict.sure:  # chips may tighten, too
+            continue
         _take_out(sim, verdict.bodies)
         chips += verdict.bodies
         watch = _Watch(sim, c, wait, watch.begin)
@@ -221,7 +234,8 @@ class _Watch:
 
         In the last quarter of all steps it moved no less far than in the quarter before. Where the
         ratio has fallen by less than a tenth in the last half, it slides, by less than half, it
-        creeps. If it creeps, or if it has not moved by `travel`, this must be so after four times the wait and `UNKNOWN` steps.
+        creeps. If it creeps, this must be so after four times the wait and `UNKNOWN` steps; if it
+        has not moved by `travel`, it is sure only then.
         """
         last = len(self.looks) - 1
         quarter = last // 4
@@ -230,10 +244,12 @@ class _Watch:
         if slower or now.least <= 0.5 * half.least:
             return None
         saw: Seen = "sliding" if now.least > STEADY * half.least else "creeping"
-        may_tighten = now.moved <= self.criterion.travel  # an anchor, or a joint that closes again
-        if (saw == "creeping" or may_tighten) and done < max(UNKNOWN, 4 * self.wait):
+        early = done < max(UNKNOWN, 4 * self.wait)
+        if saw == "creeping" and early:
             return None
-        return Verdict(False, saw, f"{text}, ratio stays at {now.least:.2g}", self.moved())
+        may_tighten = now.moved <= self.criterion.travel  # an anchor, or a joint that closes again
+        why = f"{text}, ratio stays at {now.least:.2g}"
+        return Verdict(False, saw, why, self.moved(), sure=not (early and may_tighten))
 
     def _place(self, ways: Floats) -> str:
         farthest = int(ways.argmax())

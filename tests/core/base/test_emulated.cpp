@@ -1,4 +1,5 @@
-// Planted faults that the emulated device must find: races, host code in a run, memory of the host.
+// Planted faults that the emulated device must find: races, host code in a run or that does not
+// wait, memory of the host.
 #include "core/base/emulated.hpp"
 
 #if defined(CDEM_EMULATED)
@@ -8,6 +9,7 @@
 
 #include <numeric>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include "core/base/column.hpp"
@@ -132,6 +134,26 @@ TEST_CASE("every launch has an order of its own") {
     CHECK(sorted == natural);
   }
   CHECK(orders[0] != orders[1]);
+}
+
+TEST_CASE("launches run when host code waits for them, so it finds old numbers before") {
+  Column<Real> x = column_of<Real>(count);
+  const Real* now = x.data();
+  queue_launches(true);
+  for_each_item({}, count, Shift{x.data(), count, 0});
+  CHECK(now[0] == 0);
+  for_each_item({}, count, Shift{x.data(), count, 0});
+  CHECK(on_host(x)[0] == 2);
+  for_each_item({}, count, Shift{x.data(), count, 1});
+  CHECK(now[0] == 2);
+  CHECK_THROWS_AS(wait_for_launches(), std::logic_error);
+  wait_for_launches();  // the fault has been told
+  for_each_item({}, count, Shift{x.data(), count, 0});
+  {
+    const Column<Real> gone = std::move(x);
+  }  // waits for launches that use it
+  wait_for_launches();
+  queue_launches(false);
 }
 
 TEST_CASE("kernels that touch memory of the host in a run are found") {
