@@ -140,7 +140,7 @@ def _on_surface(
 
 
 def _is_in(box: Region, places: Floats) -> NDArray[np.bool_]:
-    return ((places >= box.min) & (places <= box.max)).all(axis=-1)
+    return np.asarray(((places >= box.min) & (places <= box.max)).all(axis=-1))
 
 
 def _corners_in_box(triangles: Floats, box: Region) -> Floats:
