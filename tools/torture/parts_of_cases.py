@@ -74,7 +74,7 @@ bolts:
   - {name: one, type: bar, points: [[1, 1, 3], [1, 1, 0.5]], free_length: 0.5, plate: true,
      anchor: {stiffness: 1e8, strength: 1e5}, pretension: 10 kN, install: dig, remove: end}
   - {name: grid, type: bar, pattern: {surface: {group: rock, normal: [0, 0, 1]}, spacing: [1.5, 1],
-     length: 2, direction: [0, 0, -1]}, plate: {stiffness: 1e8, strength: 1e5}}
+     length: 2, direction: [0, 0, -1], box: {min: [-9, -9, -9], max: [9, 9, 9]}}, plate: {stiffness: 1e8, strength: 1e5}}
   - {name: ring, type: bar, rings: {axis: [[2, 0, 2], [2, 2, 2]], spacing: 1, count: 3,
      angles: [90, 270], inside: late, length: 0.8}}
 loads:

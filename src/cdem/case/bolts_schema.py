@@ -8,6 +8,7 @@ import numpy as np
 from pydantic import BeforeValidator, Field, model_validator
 
 from cdem.case.bodies_schema import exactly_one
+from cdem.case.loads_schema import Region
 from cdem.case.surface_schema import Surface
 from cdem.case.types import Direction3, FileName, Length3, Name, Part, Quantity
 
@@ -88,12 +89,15 @@ class Fixture(Part):
 
 
 class Pattern(Part):
-    """Bolts on a grid on a surface."""
+    """Bolts in rows on a surface."""
 
     surface: Surface = Field(description="Surface of the mesh, or {group, normal}")
+    box: Region | None = Field(
+        None, description="Only heads in this box, where the rows are centred; default the surface"
+    )
     spacing: Annotated[
         list[Annotated[float, Quantity("m", above=0)]], Field(min_length=2, max_length=2)
-    ] = Field(description="Spacing along the surface, and up or across it [m]")
+    ] = Field(description="Spacing along a row, and of the rows up or across the surface [m]")
     length: Annotated[float, Quantity("m", above=0)] = Field(description="Length of each bolt [m]")
     direction: Direction3 | None = Field(
         None, description="From head to toe; default normal to the surface [1]"

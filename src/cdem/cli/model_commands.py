@@ -98,7 +98,7 @@ def check(
         Path | None,
         typer.Option(
             metavar="FILE.png",
-            help="Draw groups, supports, loads and interfaces, or a refused body.",
+            help="Draw groups, supports, loads, joints, bolts, water, or a refused body.",
         ),
     ] = None,
     strict: Strict = False,

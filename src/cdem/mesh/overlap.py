@@ -143,22 +143,31 @@ def clip(a: Floats, b: Floats) -> Floats | None:
     polygon = b[::-1] - np.outer(along(b[::-1] - a[0], normal), normal)
     for start, end in zip(a, np.roll(a, -1, axis=0), strict=True):
         inward = np.cross(normal, end - start)
-        distance = along(polygon - start, inward)
-        kept = []
-        for k in range(len(polygon)):
-            p, q = distance[k - 1], distance[k]
-            if (p < 0) != (q < 0):
-                kept.append(polygon[k - 1] + p / (p - q) * (polygon[k] - polygon[k - 1]))
-            if q >= 0:
-                kept.append(polygon[k])
-        if len(kept) < 3:
+        polygon = inner_part(polygon, along(polygon - start, inward))
+        if len(polygon) < 3:
             return None
-        polygon = np.array(kept)
     near = 1e-9 * lengths(a[2] - a[0])
     polygon = polygon[np.linalg.norm(polygon - np.roll(polygon, 1, axis=0), axis=1) > near]
     if len(polygon) < 3 or point_areas(polygon).sum() < least:
         return None
     return polygon
+
+
+def inner_part(polygon: Floats, distance: Floats) -> Floats:
+    """The part of a convex polygon where a linear function is not negative, shape (n, 3) [m].
+
+    Args:
+        polygon: Vertices, shape (n, 3) [m].
+        distance: The function at the vertices, shape (n,).
+    """
+    kept = []
+    for k in range(len(polygon)):
+        p, q = distance[k - 1], distance[k]
+        if (p < 0) != (q < 0):
+            kept.append(polygon[k - 1] + p / (p - q) * (polygon[k] - polygon[k - 1]))
+        if q >= 0:
+            kept.append(polygon[k])
+    return np.reshape(kept, (-1, 3))
 
 
 def point_areas(polygon: Floats) -> Floats:

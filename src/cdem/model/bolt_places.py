@@ -10,8 +10,10 @@ from numpy.typing import NDArray
 
 from cdem.case.bolts_schema import Pattern, Rings
 from cdem.case.case import Case
+from cdem.case.loads_schema import Region
 from cdem.errors import CaseError
 from cdem.mesh.arrays import along, lengths, matrix_product
+from cdem.mesh.overlap import inner_part
 from cdem.mesh.paths import passes, walk
 from cdem.mesh.topology import Topology
 from cdem.model.selection import select_faces
@@ -68,7 +70,9 @@ def polylines(case: Case, t: Topology, names: list[str]) -> list[Polyline]:
         if entry.points is not None:
             lines.append(Polyline(entry.name, i, np.array(entry.points, float)))
             continue
+        in_box = ""
         if entry.pattern is not None:
+            in_box = " in its box" if entry.pattern.box is not None else ""
             found = list(_on_surface(case, t, names, entry.pattern, f"{path}.pattern"))
         else:
             assert entry.rings is not None
@@ -76,7 +80,7 @@ def polylines(case: Case, t: Topology, names: list[str]) -> list[Polyline]:
         if not found:
             raise CaseError(
                 f"{case.where(path)}: {path}: the pattern has no bolts; its spacing is wider than "
-                "the surface"
+                f"the surface{in_box}"
             )
         lines += [Polyline(f"{entry.name}.{k + 1}", i, ends) for k, ends in enumerate(found)]
     return lines
@@ -108,7 +112,18 @@ def _on_surface(
             f"normal "
             f"is [{', '.join(f'{x:.3g}' for x in normal)}]; reverse it"
         )
-    low, high = plane.min(axis=(0, 1)), plane.max(axis=(0, 1))
+    if (box := pattern.box) is not None:
+        part = _corners_in_box(triangles, box)
+        if len(part) == 0:
+            ends = [_text(end(axis=(0, 1))) for end in (triangles.min, triangles.max)]
+            raise CaseError(
+                f"{case.where(path)}: {path}.box: the surface has no part in this box; it reaches "
+                f"from {ends[0]} to {ends[1]}"
+            )
+        corners = matrix_product(part, np.stack([u, v], axis=1))
+    else:
+        corners = plane.reshape(-1, 2)
+    low, high = corners.min(axis=0), corners.max(axis=0)
     counts = np.floor((high - low) / pattern.spacing + 1e-9).astype(int)
     if counts.prod() > MOST_BOLTS:
         raise CaseError(
@@ -120,8 +135,25 @@ def _on_surface(
         for column in range(counts[0]):
             place = begin + np.array([column, row]) * pattern.spacing
             head = _in_triangles(place, plane, triangles)
-            if head is not None:
+            if head is not None and (box is None or _is_in(box, head)):
                 yield np.stack([head, head + pattern.length * way])
+
+
+def _is_in(box: Region, places: Floats) -> NDArray[np.bool_]:
+    return np.asarray(((places >= box.min) & (places <= box.max)).all(axis=-1))
+
+
+def _corners_in_box(triangles: Floats, box: Region) -> Floats:
+    """Corners of the parts of triangles inside a box, shape (corners, 3) [m]."""
+    whole = _is_in(box, triangles).all(axis=1)
+    reached = (triangles.max(axis=1) >= box.min) & (triangles.min(axis=1) <= box.max)
+    parts = [triangles[whole].reshape(-1, 3)]
+    for part in triangles[reached.all(axis=1) & ~whole]:
+        for axis in range(3):
+            part = inner_part(part, part[:, axis] - box.min[axis])
+            part = inner_part(part, box.max[axis] - part[:, axis])
+        parts.append(part)
+    return np.concatenate(parts)
 
 
 def _triangles(t: Topology, faces: NDArray[np.intp]) -> Floats:

@@ -44,14 +44,18 @@ class _Field:
 
     def pressure(self, points: Floats, curves: Curves) -> Floats:
         """Pressure [Pa] at points at time zero, shape (points,)."""
-        lift, factor = (curves[c].at_start for c in self.curves)
-        raw = (
+        factor = curves[self.curves[1]].at_start
+        return factor * np.maximum(self.signed(points, curves), 0.0)
+
+    def signed(self, points: Floats, curves: Curves) -> Floats:
+        """The same without its history, negative above a water table [Pa], shape (points,)."""
+        lift = curves[self.curves[0]].at_start
+        return (
             self.row[0]
             + along(points, np.array(self.row[1:4]))
             + self.kept(points)
             + self.row[5] * lift
         )
-        return factor * np.maximum(raw, 0.0)
 
 
 DRY = _Field([0.0] * 8, (0, 0))
@@ -143,6 +147,16 @@ class WaterTables:
             with self._case.blame(f"water.fields.{number}"):
                 found[some] = self.fields[number].pressure(points[some], self._curves)
         return found
+
+    def signed(self, number: int, points: Floats) -> Floats:
+        """Pressure [Pa] of a field at points at time zero, negative above its table.
+
+        Args:
+            number: Number of the field.
+            points: Points [m], shape (points, 3).
+        """
+        with self._case.blame(f"water.fields.{number}"):
+            return self.fields[number].signed(points, self._curves)
 
     def kept(self, field: NDArray[np.integer], points: Floats) -> Floats:
         """Stored pressure of fields at points [Pa], shape (points,)."""

@@ -1,50 +1,54 @@
-"""A picture of a model before the run: groups, supports, loads, interfaces."""
+"""A picture of a model before the run: groups, supports, loads, interfaces, joints, bolts, water."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from cdem.case.laws import INTERFACE_LAWS
+from cdem.model.faces import face_areas
 from cdem.model.interfaces import interfaces_of
-from cdem.output.render import load_pyvista, snapshot
-from cdem.output.scene import MATTE, View, add_rock, color, labels, new_plotter, take
+from cdem.output.model_inside import draw_bolts, draw_water
+from cdem.output.model_panel import BACK, DOTS, SIZE, Panel
+from cdem.output.render import load_pyvista
+from cdem.output.scene import View, add_rock, color, labels, new_plotter, take
 from cdem.rows import rows_of
 
 if TYPE_CHECKING:
     from cdem.errors import BodyError
     from cdem.run.state import RunState
 
-SIZE = (1000, 850)
 MOST_INNER = 5000
 """Above this number, pairs of faces inside one group are only counted: drawn, they would hide the rest."""
 INNER_SIZE = 0.6
 """Scale of drawn faces of pairs inside a group, so that gaps remain visible."""
+INSIDE = ("#ee6677", "#228833", "#ccbb44", "#aa3377", "#999933", "#44aa99", "#882255", "#ddcc77")
+"""Colours of joints and pairs of faces: those of `scene.color` without blue, which is water."""
 ARROW = 0.08
 """Length of the arrow of the largest load over the size of the model."""
-_BACK = np.array([0.6, -0.8, 0.75])
-"""Direction of view."""
-DOTS = ("black", "#d62728", "#9467bd", "#17becf", "#8c564b", "#7f7f7f", "#2ca02c")
-"""Colours of the dots, one for each kind of support."""
 
 
 def draw_model(sim: RunState) -> NDArray[np.uint8]:
     """Two views side by side, shape (height, width, 3).
 
     The left view has the groups, with dots at fixed or driven nodes and arrows at loaded nodes. The
-    right view has the pairs of touching faces, by pair of groups, in the translucent body.
+    right view has the translucent body with joints, other pairs of touching faces by pair of groups,
+    bolts and water tables.
 
     Raises:
         CdemError: pyvista is not installed, or OpenGL is missing.
     """
     pyvista = load_pyvista()
-    panels = [_Panel(pyvista, sim) for _ in range(2)]
+    panels = [Panel(pyvista, sim) for _ in range(2)]
+    panels[1].ghost(sim.build.topology)
     _groups(panels[0], sim)
     _held(panels[0], sim)
     _loads(panels[0], sim)
     _interfaces(panels[1], sim)
+    draw_bolts(panels[1], sim)
+    draw_water(panels[1], sim)
     rows = max(len(panel.legend) for panel in panels)
     return np.concatenate(
         [np.concatenate([labels(panel.legend, rows, SIZE[0]), panel.image()]) for panel in panels],
@@ -61,7 +65,7 @@ def draw_refused(refused: BodyError) -> NDArray[np.uint8]:
     pyvista = load_pyvista()
     points = np.asarray(refused.points, float)
     size = float(np.linalg.norm(np.ptp(points, axis=0)))
-    plotter, view = new_plotter(pyvista, SIZE), View.framing(points, _BACK, SIZE)
+    plotter, view = new_plotter(pyvista, SIZE), View.framing(points, BACK, SIZE)
     flat = np.concatenate([[len(face), *face] for face in refused.faces])
     body = pyvista.PolyData(points, faces=flat)
     add_rock(plotter, body, view, color="#bab0ac", opacity=0.6)
@@ -77,36 +81,7 @@ def draw_refused(refused: BodyError) -> NDArray[np.uint8]:
     return take(plotter, view)
 
 
-class _Panel:
-    """One view of the model, and the entries of its legend."""
-
-    def __init__(self, pyvista: Any, sim: RunState) -> None:
-        self.pyvista = pyvista
-        self.plotter = new_plotter(pyvista, SIZE)
-        self.legend: list[tuple[str, str]] = []
-        position = sim.build.start_position
-        self.size = float(np.linalg.norm(np.ptp(position, axis=0)))
-        self.view = View.framing(position, _BACK, SIZE)
-        self.surface = snapshot(sim)
-
-    def add(self, mesh: Any, color: str, label: str | None = None, **how: Any) -> None:
-        """Draw a mesh in one colour; a label adds it to the legend."""
-        self.plotter.add_mesh(mesh, color=color, **MATTE, **how)
-        if label is not None:
-            self.legend.append((label, color))
-
-    def faces(self, points: NDArray, nodes: NDArray) -> Any:
-        """A mesh of faces, whose fourth node is -1 for a triangle."""
-        counts = (nodes >= 0).sum(axis=1)
-        flat = np.column_stack([counts, nodes])
-        return self.pyvista.PolyData(points, faces=flat[flat >= 0])
-
-    def image(self) -> NDArray[np.uint8]:
-        self.plotter.add_axes(color="black")
-        return take(self.plotter, self.view)
-
-
-def _groups(panel: _Panel, sim: RunState) -> None:
+def _groups(panel: Panel, sim: RunState) -> None:
     surface = panel.surface
     mesh = panel.pyvista.PolyData(surface.points, faces=surface.faces)
     for index, name in enumerate(sim.build.group_names):
@@ -119,7 +94,7 @@ def _groups(panel: _Panel, sim: RunState) -> None:
             panel.legend.append((name, color(index)))
 
 
-def _held(panel: _Panel, sim: RunState) -> None:
+def _held(panel: Panel, sim: RunState) -> None:
     """Dots at fixed or driven nodes of outer faces, one colour for each kind."""
     row = sim.build.arrays["support.row"]
     component = rows_of(sim.core, "support.component").numbers
@@ -137,7 +112,7 @@ def _held(panel: _Panel, sim: RunState) -> None:
         )  # fmt: skip
 
 
-def _loads(panel: _Panel, sim: RunState) -> None:
+def _loads(panel: Panel, sim: RunState) -> None:
     """Arrows of the nodal forces of tractions, the largest at full length."""
     first = sim.build.arrays["load.first"]
     nodes = np.repeat(np.arange(len(first) - 1), np.diff(first))
@@ -152,30 +127,40 @@ def _loads(panel: _Panel, sim: RunState) -> None:
     panel.add(glyphs, "#c00000", f"traction: {len(np.unique(nodes)):,} nodes")
 
 
-def _interfaces(panel: _Panel, sim: RunState) -> None:
-    surface = panel.surface
-    skin = panel.pyvista.PolyData(surface.points, faces=surface.faces)
-    panel.add(skin, "#bbbbbb", opacity=0.15)
+def _interfaces(panel: Panel, sim: RunState) -> None:
+    """Joints as whole translucent planes; other pairs inside a group smaller than they are."""
     t, names = sim.build.topology, sim.build.group_names
     pairs = np.concatenate([t.pair_faces, t.overlap_faces])
     groups = np.sort(t.face_group[pairs].reshape(-1, 2), axis=1)
     laws, table = interfaces_of(sim.case, names)
     kinds = t.face_kind[pairs].reshape(-1, 2)
-    where = np.column_stack([groups, table[kinds[:, 0], kinds[:, 1]]])
-    for number, (a, b, index) in enumerate(np.unique(where, axis=0)):
-        faces = pairs[(where == (a, b, index)).all(axis=1), 0]
+    joints = np.where(kinds[:, 0] // len(names) == kinds[:, 1] // len(names), kinds[:, 0], 0)
+    joints = joints // len(names) - 1
+    where = np.column_stack([groups, table[kinds[:, 0], kinds[:, 1]], joints])
+    sheets = []
+    for number, (a, b, index, joint) in enumerate(np.unique(where, axis=0)):
+        fill = INSIDE[number % len(INSIDE)]
+        faces = pairs[(where == (a, b, index, joint)).all(axis=1), 0]
         law = laws[index]
-        joint = f", joint {law.joint}" if getattr(law, "joint", None) else ""
-        label = f"{names[a]} - {names[b]}{joint}: {len(faces):,} pair(s), "
-        label += INTERFACE_LAWS[law.law].summary(law)
+        nodes, strengths = t.face_nodes[faces], INTERFACE_LAWS[law.law].summary(law)
+        between = f"{names[a]} - {names[b]}"
+        if joint >= 0:
+            between += f", joint {sim.case.model.joint_surfaces[joint]}"
+        if 0 <= joint < len(sim.case.model.joints):
+            area = face_areas(t.node_position, nodes).sum()
+            size = f"{area:,.0f}" if area >= 100 else f"{area:.3g}"
+            label = f"{between}: {size} m2, {strengths}"
+            sheets.append((panel.faces(t.node_position, nodes), fill, label))
+            continue
+        label = f"{between}: {len(faces):,} pair(s), {strengths}"
         if a == b and len(faces) > MOST_INNER:
             panel.legend.append((label + " (not drawn)", "#ffffff"))
             continue
-        nodes = t.face_nodes[faces]
         points = t.node_position[np.where(nodes < 0, nodes[:, :1], nodes)]
         if a == b:
             middle = np.where((nodes >= 0)[..., None], points, np.nan)
             middle = np.nanmean(middle, axis=1, keepdims=True)
             points = middle + INNER_SIZE * (points - middle)
         own = np.where(nodes < 0, -1, np.arange(nodes.size).reshape(nodes.shape))
-        panel.add(panel.faces(points.reshape(-1, 3), own), color(number), label)
+        panel.add(panel.faces(points.reshape(-1, 3), own), fill, label)
+    panel.sheets(sheets)

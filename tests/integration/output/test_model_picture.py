@@ -45,6 +45,68 @@ def test_the_picture_shows_and_names_everything(run_cli, wall_folder, monkeypatc
         assert all(has(half[:rows], color) for _, color in entries if color.startswith("#"))
 
 
+def _inside(run_cli, monkeypatch, name):
+    """The legend and the right view of a template, in a folder of its own."""
+    if not can_draw():
+        pytest.skip("no OpenGL")
+    legends, legend = [], model_picture.labels
+    monkeypatch.setattr(
+        model_picture, "labels", lambda e, *size: legends.append(e) or legend(e, *size)
+    )
+    assert run_cli("new", name)[0] == 0
+    status, _, err = run_cli("check", f"{name}.yaml", "--picture", "m.png", "--threads", "1")
+    assert (status, err) == (0, "")
+    image = np.asarray(Image.open("m.png")).astype(int)
+    view = image[-model_picture.SIZE[1] :, model_picture.SIZE[0] :]
+    view[700:, :200] = 255  # the axes
+    return legends[1], view
+
+
+def _bluish(image):
+    red, green, blue = image[..., 0], image[..., 1], image[..., 2]
+    return (blue > red + 30) & (blue > green + 20)
+
+
+def test_joints_are_whole_and_bolts_and_water_are_drawn(run_cli, tmp_path, monkeypatch):
+    """The planes of the road cut have the area of its sections; its table cuts the rock."""
+    monkeypatch.chdir(tmp_path)
+    legend, image = _inside(run_cli, monkeypatch, "road_cut")
+    assert [label for label, _ in legend] == [
+        "rock - rock, joint bedding: 1,088 m2, 30 deg, 40000 Pa, bonded c 4e+04 T 0 Pa",
+        "rock - rock, joint steep: 1,000 m2, 35 deg",
+        "bolts anchors: 8 of strand5, 22 m",
+        "water table: plane",
+    ]
+    assert (image.max(axis=2) < 40).sum() > 1000  # bolts and their heads
+    assert _bluish(image).mean() > 0.005
+    reddish = image[..., 0] > image[..., 1:].max(axis=2) + 20
+    greenish = image[..., 1] > image[..., [0, 2]].max(axis=2) + 10
+    assert reddish.mean() > 0.05
+    assert greenish.mean() > 0.02
+
+
+def test_a_table_is_drawn_where_a_stage_lifts_it(run_cli, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    legend, image = _inside(run_cli, monkeypatch, "bedded_slope")
+    assert [label for label, _ in legend][-2:] == [
+        "water table: plane, lifted by -20 m (no table in the rock)",
+        "water table, stage rain: plane, lifted by 6 m",
+    ]
+    assert _bluish(image).mean() > 0.005
+
+
+def test_open_water_is_drawn_outside_the_rock_at_its_highest(run_cli, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    legend, image = _inside(run_cli, monkeypatch, "dam")
+    assert [label for label, _ in legend][-2:] == [
+        "water uplift: formula, in base (no table in the rock)", "reservoir: level 50 m"
+    ]  # fmt: skip
+    rows, columns = np.nonzero(_bluish(image))
+    assert columns.max() < model_picture.SIZE[0] / 2  # upstream of the dam only
+    assert rows.max() < model_picture.SIZE[1] / 2
+    assert rows.min() > 5  # the whole of it
+
+
 def test_many_inner_pairs_are_counted_not_drawn(wall_folder, monkeypatch):
     if not can_draw():
         pytest.skip("no OpenGL")

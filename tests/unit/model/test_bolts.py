@@ -82,6 +82,29 @@ def test_a_pattern_covers_a_surface_at_its_spacing():
     assert toes[:, 2] == pytest.approx(0.5, abs=0.1)
 
 
+def test_rows_of_a_pattern_are_centred_in_its_box():
+    """Four rows up a face of 68 deg, between heights 6 and 22 m: 17.2 m along the dip."""
+    pattern = {"surface": {"group": "rock", "normal": [5, 0, 2]},
+               "box": {"min": [0, 0, 6], "max": [50, 4, 22]}, "spacing": [3, 4.3],
+               "length": 5, "direction": [-1, 0, 0]}  # fmt: skip
+    corners = [[x, y, z] for y in (0, 6) for x, z in ((0, 0), (42, 0), (30, 30), (0, 30))]
+    cut = {"model": {"blocks": [{"group": "rock", "polyhedron": {"vertices": corners}}]},
+           "groups": {"rock": {"material": "rock", "fix": ["x", "y", "z"]}}}  # fmt: skip
+    heads = np.array([b.places[0] for b in model({"pattern": pattern, "plate": True}, **cut).bolts])
+    edge = 0.5 * (16 * np.sqrt(1.16) - 3 * 4.3)
+    heights = 6 + (edge + 4.3 * np.arange(4)) / np.sqrt(1.16)
+    np.testing.assert_allclose(heads[:, 2], heights, atol=1e-12)
+    np.testing.assert_allclose(heads[:, 1], 2, atol=1e-12)
+    np.testing.assert_allclose(heads[:, 0], 42 - 0.4 * heights, atol=1e-12)
+
+
+def test_a_box_around_the_surface_changes_nothing():
+    pattern = {"surface": {"group": "right", "normal": [0, 0, 1]}, "spacing": [0.5, 1], "length": 1}
+    boxed = pattern | {"box": {"min": [0, 0, 0], "max": [9, 9, 9]}}
+    for all_, some in zip(*(model({"pattern": p}).bolts for p in (pattern, boxed)), strict=True):
+        np.testing.assert_array_equal(all_.places, some.places)
+
+
 def test_rings_begin_where_the_opening_ends():
     rings = {"axis": [[3, 0.5, 1], [3, 1.5, 1]], "spacing": 1, "count": 2, "angles": [90, 270],
              "inside": "right", "length": 0.5}  # fmt: skip
@@ -105,6 +128,15 @@ def test_rings_begin_where_the_opening_ends():
                       "length": 1}}, "the pattern has no bolts"),
         ({"pattern": {"surface": {"group": "right", "normal": [0, 0, 1]}, "spacing": [1, 1],
                       "length": 1, "direction": [0, 0, 1]}}, "points out of the surface"),
+        ({"pattern": {"surface": {"group": "right", "normal": [0, 0, 1]}, "spacing": [1, 1],
+                      "length": 1, "box": {"min": [0, 0, 0], "max": [1, 2, 3]}}},
+         r"the surface has no part in this box; it reaches from \[2, 0, 2\] to \[4, 2, 2\]"),
+        ({"pattern": {"surface": {"group": "right", "normal": [0, 0, 1]}, "spacing": [1, 1],
+                      "length": 1, "box": {"min": [2, 0, 0], "max": [2.5, 2, 3]}}},
+         "its spacing is wider than the surface in its box"),
+        ({"pattern": {"surface": {"group": "right", "normal": [0, 0, 1]}, "spacing": [1, 1],
+                      "length": 1, "box": {"min": [2, 0, 4], "max": [4, 2, 3]}}},
+         "min must not be above max"),
         (ACROSS | {"rings": {"axis": [[0, 0, 0], [0, 1, 0]], "spacing": 1, "count": 3, "length": 1}},
          "points"),
     ],
