@@ -81,7 +81,7 @@ def test_bonds_of_faces_that_do_not_match_are_whole_at_the_start():
     above = {"group": "a", "box": {"size": [1, 1, 0.5]}, "translate": [0.3, 0.1, 0]}
     below = {
         "group": "b",
-        "box": {"size": [2, 2, 0.5], "divisions": [2, 2, 1]},
+        "box": {"size": [2, 2, 0.5], "divisions": [2, 2, 1], "shape": "tet4"},
         "translate": [0, 0, -0.5],
     }
     bond = {"friction_angle": 30, "cohesion": 1e6, "tensile_strength": 1e6}
