@@ -2,6 +2,7 @@
 #include "core/bolts/data.hpp"
 
 #include "core/base/parallel.hpp"
+#include "core/bolts/springs.hpp"
 #include "core/bolts/views.hpp"
 #include "core/model/phase_timer.hpp"
 
@@ -51,6 +52,13 @@ void Bolts::act(const Model& m, cdem::State& s, Queue q) {
   if (count == 0) return;
   const PhaseTimer timer(s, Phase::contact);
   for_each_item(q, count, bolt_solver(m, s));
+}
+
+std::vector<NodeSpring> Bolts::springs(const Model& m, cdem::State& s) {
+  const SolveBolt bolts = on_host(bolt_solver(m, s));
+  std::vector<NodeSpring> springs;
+  for (Index bolt = 0; bolt < given_of<Bolts>(m).count; ++bolt) add_springs(bolts, bolt, springs);
+  return springs;
 }
 
 void Bolts::take_out(const Given& b, State& s, const std::vector<Index>& which, const Flag* out) {

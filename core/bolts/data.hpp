@@ -14,6 +14,7 @@ namespace cdem {
 
 struct Bolts;
 struct Model;
+struct NodeSpring;
 struct State;
 
 /// Bolts: chains of nodes, each located in an element of the rock. Points are the nodes of all
@@ -112,6 +113,8 @@ struct Bolts {
 
   /// Bring all bolts that act into equilibrium and write their forces into their corner rows.
   static void act(const Model& model, cdem::State& state, Queue queue);
+  /// Bars with the grout that they pull at, and dowels.
+  static std::vector<NodeSpring> springs(const Model& model, cdem::State& state);
   /// Cut these bolts in excavated rock: their rest keeps holding the remaining rock.
   static void take_out(const Given& b, State& s, const std::vector<Index>& which, const Flag* out);
   /// Bolts that are not installed yet have their grout in blocks that come in.

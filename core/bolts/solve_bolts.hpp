@@ -41,6 +41,18 @@ struct SolveBolt {
     phase[bolt] = Flag(BoltPhase::acting);
   }
 
+  CDEM_HD Vec3<Real> direction(Index j) const {
+    return (1 / scratch(j)[3]) * (place(j + 1) - place(j));
+  }
+  /// Direction of the bolt in the two blocks beside the bar that leads across a joint, which itself
+  /// leans where the joint has shifted.
+  CDEM_HD Vec3<Real> axis(Index bar, Index bolt) const {
+    const bool before = bar > first[bolt], after = bar + 2 < first[bolt + 1];
+    if (!before && !after) return direction(bar);
+    const Vec3<Real> none{0, 0, 0};
+    return unit((before ? direction(bar - 1) : none) + (after ? direction(bar + 1) : none));
+  }
+
  private:
   CDEM_HD Vec3<Real> point(Index p) const {
     Vec3<Real> x{0, 0, 0};
@@ -50,9 +62,6 @@ struct SolveBolt {
   }
   CDEM_HD Real* scratch(Index i) const { return columns.scratch + std::size_t(i) * bolt_scratch; }
   CDEM_HD Vec3<Real> place(Index i) const { return {scratch(i)[0], scratch(i)[1], scratch(i)[2]}; }
-  CDEM_HD Vec3<Real> direction(Index j) const {
-    return (1 / scratch(j)[3]) * (place(j + 1) - place(j));
-  }
 
   /// Places of the nodes and lengths of the bars now.
   CDEM_HD void measure(const BoltChain& chain, bool placed) const {
@@ -114,15 +123,6 @@ struct SolveBolt {
       put(i, after - before);
       before = after;
     }
-  }
-
-  /// Direction of the bolt in the two blocks beside the bar that leads across a joint, which itself
-  /// leans where the joint has shifted.
-  CDEM_HD Vec3<Real> axis(Index bar, Index bolt) const {
-    const bool before = bar > first[bolt], after = bar + 2 < first[bolt + 1];
-    if (!before && !after) return direction(bar);
-    const Vec3<Real> none{0, 0, 0};
-    return unit((before ? direction(bar - 1) : none) + (after ? direction(bar + 1) : none));
   }
 
   /// Dowel: resists the shift of the two sides of a joint across the bolt.

@@ -29,6 +29,8 @@
 //   static void take_out(given, state, items, out);  nodes of these items are out now: their
 //                                                  stored energy goes into a term of losses
 //   static void bring_in(given, state, out);       blocks have come in
+//   static std::vector<NodeSpring> springs(model, state);  if any: its stiffness after `act`, for a
+//                                                  solve; they do not hold a body by themselves
 //
 // Forces from outside, Port::applied: `act` writes a row for each vertex that it loads into
 // applied_of<Module>(state).rows. The engine sums them on nodes that are not out, books their work

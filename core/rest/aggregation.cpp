@@ -23,40 +23,39 @@ RigidModes rigid_modes(const std::vector<Vec3<Real>>& place, const std::vector<F
 }
 
 void invert(Index n, Real* a) {
-  // Cholesky factor L, its inverse, and L^-T L^-1
-  std::vector<Real> l(std::size_t(n) * n), inverse(std::size_t(n) * n);
-  const auto at = [n](std::vector<Real>& of, Index i, Index j) -> Real& {
-    return of[std::size_t(i) * n + j];
-  };
+  // Cholesky factor L, its inverse, and L^-T L^-1; all loops run along rows
+  std::vector<Real> l(a, a + std::size_t(n) * n), inverse(l.size()), column(n);
+  const auto row = [n](auto& of, Index i) { return &of[std::size_t(i) * n]; };
   constexpr Real tiny = 1e-13;
   for (Index j = 0; j < n; ++j) {
-    Real pivot = a[std::size_t(j) * n + j];
-    const Real own = pivot;
-    for (Index k = 0; k < j; ++k) pivot -= at(l, j, k) * at(l, j, k);
-    if (!(pivot > tiny * own)) continue;
-    at(l, j, j) = std::sqrt(pivot);
+    const Real pivot = row(l, j)[j];
+    const bool counts = pivot > tiny * a[std::size_t(j) * n + j];
+    const Real root = counts ? std::sqrt(pivot) : 0;
+    for (Index i = j + 1; i < n; ++i) column[i] = counts ? row(l, i)[j] / root : 0;
+    row(l, j)[j] = root;
     for (Index i = j + 1; i < n; ++i) {
-      Real sum = a[std::size_t(i) * n + j];
-      for (Index k = 0; k < j; ++k) sum -= at(l, i, k) * at(l, j, k);
-      at(l, i, j) = sum / at(l, j, j);
+      Real* of = row(l, i);
+      const Real own = of[j] = column[i];
+      for (Index k = j + 1; k <= i; ++k) of[k] -= own * column[k];
     }
   }
-  for (Index j = 0; j < n; ++j) {
-    if (at(l, j, j) == 0) continue;
-    at(inverse, j, j) = 1 / at(l, j, j);
-    for (Index i = j + 1; i < n; ++i) {
-      if (at(l, i, i) == 0) continue;
-      Real sum = 0;
-      for (Index k = j; k < i; ++k) sum -= at(l, i, k) * at(inverse, k, j);
-      at(inverse, i, j) = sum / at(l, i, i);
+  for (Index i = 0; i < n; ++i) {
+    Real* of = row(inverse, i);
+    const Real* factor = row(l, i);
+    if (factor[i] == 0) continue;
+    for (Index k = 0; k < i; ++k) {
+      const Real* before = row(inverse, k);
+      for (Index j = 0; j <= k; ++j) of[j] -= factor[k] * before[j];
     }
+    for (Index j = 0; j < i; ++j) of[j] /= factor[i];
+    of[i] = 1 / factor[i];
   }
-  for (Index i = 0; i < n; ++i)
-    for (Index j = 0; j < n; ++j) {
-      Real sum = 0;
-      for (Index k = std::max(i, j); k < n; ++k) sum += at(inverse, k, i) * at(inverse, k, j);
-      a[std::size_t(i) * n + j] = sum;
-    }
+  std::fill_n(a, l.size(), 0.0);
+  for (Index k = 0; k < n; ++k) {
+    const Real* of = row(inverse, k);
+    for (Index i = 0; i <= k; ++i)
+      for (Index j = 0; j <= k; ++j) a[std::size_t(i) * n + j] += of[i] * of[j];
+  }
 }
 
 std::vector<Real> diagonal_inverses(const BlockRows& a) {

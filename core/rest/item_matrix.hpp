@@ -1,19 +1,28 @@
 // item_matrix.hpp - stiffness of one element, bonded pair or contact.
 #pragma once
 
+#include <algorithm>
+
 #include "core/base/math.hpp"
+#include "core/records/node_spring.hpp"
 
 namespace cdem {
 
 /// Symmetric matrix of an item over the displacements of its nodes  [N/m].
 struct ItemMatrix {
-  static constexpr Index most = 8;  // nodes
+  static constexpr Index most = NodeSpring::most;  // nodes
 
   Index count = 0;
   Index node[most];
   Real block[most][most][9];
 
-  explicit ItemMatrix(Index nodes) : count(nodes), block{} {}
+  explicit ItemMatrix(Index nodes) : count(nodes) {
+    for (Index a = 0; a < nodes; ++a) std::fill_n(block[a][0], 9 * nodes, 0.0);
+  }
+  explicit ItemMatrix(const NodeSpring& spring) : ItemMatrix(spring.count) {
+    std::copy_n(spring.node, count, node);
+    add_spring(spring.weight, spring.axis, spring.normal, spring.shear);
+  }
 
   /// Add a spring with these stiffnesses between two points whose displacements are weighted means
   /// of those of the nodes: `weight` is that of the second less that of the first.

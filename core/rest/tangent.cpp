@@ -64,6 +64,18 @@ void for_each_matrix(const Model& m, State& s, const Visit& visit) {
     visit(contacts.edge_matrix(place));
 }
 
+/// Springs of modules.
+std::vector<NodeSpring> springs_of(const Model& m, State& s) {
+  std::vector<NodeSpring> all;
+  Modules::for_each_of<Port::rows>([&]<class Module>() {
+    if constexpr (requires { Module::springs(m, s); }) {
+      const std::vector<NodeSpring> own = Module::springs(m, s);
+      all.insert(all.end(), own.begin(), own.end());
+    }
+  });
+  return all;
+}
+
 bool is_zero(const Real* block) {
   return std::all_of(block, block + 9, [](Real number) { return number == 0; });
 }
@@ -86,21 +98,28 @@ class Joined {
   std::vector<Index> of_;
 };
 
-/// The rows and columns that have an entry.
-void find_entries(const Model& m, State& s, BlockRows& matrix) {
+/// The rows and columns that have an entry. Joins the nodes of bodies that hang together by more
+/// than springs of modules.
+void find_entries(const Model& m, State& s, const std::vector<NodeSpring>& springs,
+                  BlockRows& matrix, Joined& bodies) {
   std::vector<Index> first(m.node_count + 1);
   const auto for_each_entry = [&](const auto& act) {
-    for_each_matrix(m, s, [&](const ItemMatrix& k) {
+    const auto visit = [&](const ItemMatrix& k, bool holds) {
       for (Index a = 0; a < k.count; ++a)
         for (Index b = 0; b < k.count; ++b)
-          if (!is_zero(k.block[a][b])) act(k.node[a], k.node[b]);
-    });
-    for (Index i = 0; i < m.node_count; ++i) act(i, i);  // also of a node that nothing holds
+          if (!is_zero(k.block[a][b])) act(k.node[a], k.node[b], holds);
+    };
+    for_each_matrix(m, s, [&](const ItemMatrix& k) { visit(k, true); });
+    for (const NodeSpring& spring : springs) visit(ItemMatrix(spring), false);
+    for (Index i = 0; i < m.node_count; ++i) act(i, i, true);  // also of a node that nothing holds
   };
-  for_each_entry([&](Index row, Index) { ++first[row + 1]; });
+  for_each_entry([&](Index row, Index column, bool holds) {
+    ++first[row + 1];
+    if (holds) bodies.join(row, column);
+  });
   std::partial_sum(first.begin(), first.end(), first.begin());
   std::vector<Index> all(first.back()), next(first.begin(), first.end() - 1);
-  for_each_entry([&](Index row, Index column) { all[next[row]++] = column; });
+  for_each_entry([&](Index row, Index column, bool) { all[next[row]++] = column; });
   std::vector<Index> column, start{0};
   for (Index row = 0; row < m.node_count; ++row) {
     const auto begin = all.begin() + first[row], end = all.begin() + first[row + 1];
@@ -112,11 +131,12 @@ void find_entries(const Model& m, State& s, BlockRows& matrix) {
   matrix.column.assign(column);
 }
 
-void add_blocks(const Model& m, State& s, BlockRows& matrix) {
+void add_blocks(const Model& m, State& s, const std::vector<NodeSpring>& springs,
+                BlockRows& matrix) {
   const auto first = on_host(matrix.first), column = on_host(matrix.column);
   matrix.block.resize(column.size() * 9);
   const auto block = on_host(matrix.block);
-  for_each_matrix(m, s, [&](const ItemMatrix& k) {
+  const auto add = [&](const ItemMatrix& k) {
     for (Index a = 0; a < k.count; ++a)
       for (Index b = 0; b < k.count; ++b) {
         if (is_zero(k.block[a][b])) continue;
@@ -126,17 +146,15 @@ void add_blocks(const Model& m, State& s, BlockRows& matrix) {
         Real* sum = &block[std::size_t(place - column.data()) * 9];
         for (Index j = 0; j < 9; ++j) sum[j] += k.block[a][b][j];
       }
-  });
+  };
+  for_each_matrix(m, s, add);
+  for (const NodeSpring& spring : springs) add(ItemMatrix(spring));
 }
 
 /// Components that may move: not given, of rock that is there, and of a body that a support holds.
-std::vector<Flag> free_components(const Model& m, const State& s, const BlockRows& matrix) {
+std::vector<Flag> free_components(const Model& m, const State& s, Joined& bodies) {
   const SupportColumns supports = on_host(support_columns(m, s));
-  const auto first = on_host(matrix.first), column = on_host(matrix.column);
   const auto out = on_host(s.nodes.out);
-  Joined bodies(m.node_count);
-  for (Index i = 0; i < m.node_count; ++i)
-    for (Index e = first[i]; e < first[i + 1]; ++e) bodies.join(i, column[e]);
   std::vector<Flag> held(m.node_count), free(3 * std::size_t(m.node_count));
   for (Index i = 0; i < m.node_count; ++i)
     for (Index axis = 0; axis < 3; ++axis)
@@ -201,9 +219,11 @@ NodeSystem tangent_of(const Model& m, State& s) {
   const Transfer transfer;
   NodeSystem t;
   t.matrix.columns = m.node_count;
-  find_entries(m, s, t.matrix);
-  add_blocks(m, s, t.matrix);
-  t.free = free_components(m, s, t.matrix);
+  const std::vector<NodeSpring> springs = springs_of(m, s);
+  Joined bodies(m.node_count);
+  find_entries(m, s, springs, t.matrix, bodies);
+  add_blocks(m, s, springs, t.matrix);
+  t.free = free_components(m, s, bodies);
   find_points(m, s, t);
   hold(t);
   t.group_first = groups_of_nodes(m);

@@ -39,6 +39,7 @@ CHANGES = {
     "end": stage(end_time=math.nan),
     "rows of a stage": stage(row_every=0.0),
     "start": stage(start_step=10**9),
+    "looks": stage(ways=[0.0]),
 }
 
 

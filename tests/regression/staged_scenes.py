@@ -29,7 +29,7 @@ water:
        history: [[0, 0], [0.05, 1]], stage: fill}
   reservoir: {box: {min: [-1, -1, -1], max: [2.01, 9, 9]}, level: [[0, 0], [0.05, 3]], stage: fill}
 stages:
-  - {name: rest, mode: static, tolerance: 0.01}
+  - {name: rest, mode: static, relax: adaptive, tolerance: 0.01}
   - {name: fill, mode: dynamic, duration: 0.08, damping: {local: 0.1}}
 """
 
@@ -141,7 +141,7 @@ loads:
     - {surface: {group: wall, normal: [0, 0, 1]}, pressure: 10 kPa, stage: go on}
 water: {reservoir: {level: 1.0}}
 stages:
-  - {name: rest, mode: static, tolerance: 0.01, max_steps: 400}
+  - {name: rest, mode: static, relax: adaptive, tolerance: 0.01, max_steps: 400}
   - {name: blow, mode: dynamic, duration: 0.06, remove: [late]}
   - {name: go on, mode: dynamic, duration: 0.04, remove: [plug], add: [late],
      set: {loads.surfaces.2.pressure: 30 kPa}}

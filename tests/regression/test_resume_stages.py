@@ -42,7 +42,9 @@ def dynamic(name, duration=0.06, **more):
 
 
 def static(name, steps=100, **more):
-    return {"name": name, "mode": "static", "tolerance": 1e-3, "max_steps": steps} | more
+    """By steps alone, so that there are enough to stop in their middle."""
+    way = {"relax": "adaptive", "tolerance": 1e-3, "max_steps": steps}
+    return {"name": name, "mode": "static"} | way | more
 
 
 def dam():

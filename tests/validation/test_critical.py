@@ -13,9 +13,9 @@ import cdem
 from cdem.cli import app
 from cdem.errors import CaseError
 from cdem.run import stages
+from cdem.run.behaviour import patience
 from cdem.study.criterion import Criterion
 from cdem.study.critical import find_critical, find_factor, parameter, strength_reduction
-from cdem.study.verdict import patience
 
 SLOPE = 30.0  # [deg]
 

@@ -140,8 +140,8 @@ class Stage(Part):
     damping: Damping = Field(Damping(), description="Damping")
     relax: Literal["local", "kinetic", "adaptive", "solve"] | None = Field(
         None,
-        description="Static only: way to rest: adaptive (critical damping and scaled masses; default), "
-        "solve (equilibrium of elements, bonds and contacts in touch first, then as adaptive), kinetic "
+        description="Static only: way to rest: solve (equilibrium of elements, bonds and contacts in touch "
+        "first, then as adaptive; default), adaptive (critical damping and scaled masses), kinetic "
         "(stop at peaks of the kinetic energy), or local damping",
     )
     remove: list[Name] = Field([], description="Groups excavated at the beginning of the stage")
@@ -180,7 +180,7 @@ class Stage(Part):
         # Not by assignment: that would start these checks again.
         if self.mode == "static":
             self.__dict__["tolerance"] = self.tolerance or 1e-5
-            self.__dict__["relax"] = self.relax or "adaptive"
+            self.__dict__["relax"] = self.relax or "solve"
         if self.damping.local is None:
             self.damping.__dict__["local"] = 0.8 if self.relax == "local" else 0.0
         if self.damping.contact is None:

@@ -84,11 +84,20 @@ def run(
     if as_json:
         print(summary.read_text().rstrip())
     elif not quiet:
+        _tell_unrested(summary)
         print(f"{status}{_but_for(summary)}; results are in {folder}")
     if status == "stopped":
         again = _resume_command(case_file, folder, settings or [], threads, allow_code)
         print(f"stopped with a checkpoint; continue with: {again}", file=sys.stderr)
         raise typer.Exit(STOPPED)
+
+
+def _tell_unrested(summary: Path) -> None:
+    """Name the static stages that found no rest, and the bodies that move."""
+    from cdem.output.page_facts import unrested
+
+    for line in unrested(json.loads(summary.read_text())):
+        print(f"warning: {line}", file=sys.stderr)
 
 
 def _but_for(summary: Path) -> str:

@@ -170,8 +170,14 @@ def check_memory(case: Case, pieces: Pieces) -> None:
     solves = any(stage.relax == "solve" for stage in case.stages)
     wanted, (free, limit) = need(pieces, solves=solves), room()
     if wanted > free:
+        without = need(pieces)
+        way = (
+            f", or relax: adaptive in static stages, which takes about {without / 1e9:.3g} GB"
+            if without < free
+            else ""
+        )
         raise ModelError(
             f"{sum(pieces.values()):,} elements need about {wanted / 1e9:.3g} GB of memory; "
             f"{max(free, 0) / 1e9:.3g} GB are available ({limit}). Use fewer elements, or a "
-            "machine with more memory"
+            f"machine with more memory{way}"
         )

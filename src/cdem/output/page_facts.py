@@ -54,6 +54,12 @@ def rested(summary: dict[str, Any]) -> str:
     return f", moved by up to {ways[name]:.3g} m (group {name})"
 
 
+def unrested(summary: dict[str, Any]) -> list[str]:
+    """A line for each static stage that found no rest."""
+    stages = summary.get("stages", [])
+    return [f"stage {row['name']} {row['no_rest']}" for row in stages if row.get("no_rest")]
+
+
 def departed(summary: dict[str, Any]) -> str:
     """Blocks that have left the domain, while all others rest; empty for other ends."""
     if summary["status"] != "at rest":

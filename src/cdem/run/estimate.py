@@ -41,6 +41,7 @@ class StageEstimate:
         wall_time: Wall time of the stage if bonds break only at the initial rate [s]; None for
             a static stage, whose number of steps is unknown in advance.
         wall_time_broken: The same with all bonds broken; None for a model without bonds.
+        solve_seconds: Wall time of the solve before the first step [s]; 0 where there is none.
     """
 
     name: str
@@ -48,6 +49,7 @@ class StageEstimate:
     step_seconds: float
     wall_time: float | None
     wall_time_broken: float | None
+    solve_seconds: float = 0.0
 
     @property
     def expected(self) -> float | None:
@@ -100,7 +102,8 @@ class Estimate:
                     "moves much"
                 )
         for s in self.stages:
-            step = f"  stage {s.name}: {1e3 * s.step_seconds:.3g} ms a step"
+            solve = f"a solve of {_clock(s.solve_seconds)}, then " if s.solve_seconds else ""
+            step = f"  stage {s.name}: {solve}{1e3 * s.step_seconds:.3g} ms a step"
             if s.wall_time is None:
                 lines.append(f"{step}; the number of steps until rest is unknown")
             elif s.wall_time_broken is None:
@@ -132,6 +135,7 @@ def estimate(sim: RunState) -> Estimate:
         if index == 0 and sim.build.initial is not None:
             sim.core.run(1)
             unbalance = float(sim.core.unbalance_ratio())
+        solve = _solve(sim, begun)
         step, length = _measure(sim, partial(_follow, sim, begun))
         wall = broken = None
         if stage.duration is not None:
@@ -141,7 +145,7 @@ def estimate(sim: RunState) -> Estimate:
                 sim.core.move_exact_masses()
                 step_broken, length = _measure(sim, partial(_go_on, sim))
                 broken = stage.duration / length * step_broken
-        found.append(StageEstimate(stage.name, stage.mode, step, wall, broken))
+        found.append(StageEstimate(stage.name, stage.mode, step, wall, broken, solve))
     return Estimate(found, peak_memory(sim), unbalance)
 
 
@@ -158,6 +162,15 @@ def _take_strength(sim: RunState) -> None:
         bonds = [p.name for p in INTERFACE_LAWS[entry["law"]].parameters if p.bonds]
         entry["parameters"] |= dict.fromkeys(bonds, 0.0)
     sim.core.set_interfaces(entries)
+
+
+def _solve(sim: RunState, stage: StageState) -> float:
+    """Solve for the rest of a stage if a run does; returns the wall time [s], or 0."""
+    if not stages.solve_is_due(sim, stage):
+        return 0.0
+    begin = time.perf_counter()
+    stages.solve(sim, stage)
+    return time.perf_counter() - begin
 
 
 def _follow(sim: RunState, stage: StageState, steps: int) -> bool:

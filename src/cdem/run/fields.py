@@ -133,9 +133,8 @@ def bonds_of(sim: RunState) -> tuple[NDArray[np.int32], NDArray[np.float64]]:
     if b.assembly.counts["overlaps.count"]:
         first = b.topology.overlap_first
         faces.append(b.topology.overlap_faces)
-        intact.append(
-            np.add.reduceat(sim.core.fields()["overlaps.bond"], first[:-1]) / np.diff(first)
-        )
+        bond = sim.core.fields()["overlaps.bond"][: first[-1]]
+        intact.append(np.add.reduceat(bond, first[:-1]) / np.diff(first))
     return np.concatenate(faces), np.concatenate(intact)
 
 

@@ -55,7 +55,7 @@ def check_model(
             f"with "
             "output.maps of the run"
         )
-    own = {"simulation.reference", "simulation.born"}  # see RunState.kept
+    own = {"simulation.reference", "simulation.watched", "simulation.born"}  # see RunState.kept
     own |= {name for name in arrays if name.startswith(PREFIX)}
     other = set(arrays) - own | set(attributes.core)
     other ^= set(run.core.fields()) | set(run.core.scalars())
@@ -88,6 +88,14 @@ def wrong_kept(arrays: Mapping[str, NDArray], own: Mapping[str, NDArray]) -> str
             return f"{name} has a wrong shape or number type"
         if not np.isfinite(array).all():
             return f"{name} holds numbers that are not finite"
+    return ""
+
+
+def wrong_looks(attributes: Attributes) -> str:
+    """Fault of the looks at a static stage, or ""."""
+    for stage in (attributes.stage, attributes.ended_stage):
+        if stage is not None and len(stage.ways) != len(stage.ratios):
+            return "its looks at a stage are not whole"
     return ""
 
 

@@ -21,6 +21,7 @@ from cdem.model.backfill import nodes_of_groups
 from cdem.model.overlaps import adopt_overlaps
 from cdem.run import failures, restored, shown, stages
 from cdem.run.actions import Act, Action
+from cdem.run.behaviour import NoRest, look
 from cdem.run.changes import compare
 from cdem.run.checkpoint import has_checkpoint
 from cdem.run.fast_weakening import FastWeakening, fast_weakenings
@@ -88,6 +89,7 @@ class Simulation(RunState):
         native.set_threads(threads)
         self.results: Results | None = None
         self._fast_weakening: dict[str, FastWeakening] = {}
+        self._no_rest: NoRest | None = None
         self._actions: list[Action] = []
         if output is not None:
             from cdem.run.result_folder import (
@@ -144,8 +146,9 @@ class Simulation(RunState):
             should_stop: Called as often; True stops the run with a checkpoint.
 
         Returns:
-            How the last stage ended: "converged" (it was static and reached its tolerance), "at
-            rest" (it had `until: rest`), "ended" (by an action), "finished", or "stopped".
+            How the last stage ended: "converged" (it was static and reached its tolerance),
+            "moving", "creeping", "chattering" or "undecided" (it was static and found no rest),
+            "at rest" (it had `until: rest`), "ended" (by an action), "finished", or "stopped".
 
         Raises:
             UnstableError: The computation failed; the last checkpoint is kept.
@@ -223,6 +226,8 @@ class Simulation(RunState):
         stages.change_value(self, setting)
         if self.step_count:
             self.core.renew_step()
+        if self.stage is not None:
+            self.stage.watch_anew()
         self.settings.append(setting)
         if self.results:
             self.results.log(f"t = {self.time:.6g} s: {path} set to {value}")
@@ -326,11 +331,24 @@ class Simulation(RunState):
         if stages.record_is_due(self, stage, outcome) or ended:
             self._log_departures()
             stages.look_for_rest(self, stage)
-            self._record(frame=ended or stages.frame_is_due(self, stage, outcome))
+            no_rest = self._look_for_failure(stage, outcome)
+            last = ended or no_rest is not None
+            self._record(frame=last or stages.frame_is_due(self, stage, outcome))
             if self._check(stage):
                 outcome = "steps_done"  # rest is sought anew
             self._look_at_weakening()
+            if no_rest is not None:
+                return no_rest.status
         return stages.status(self, stage, outcome) or ("ended" if ended else None)
+
+    def _look_for_failure(self, stage: StageState, outcome: str) -> NoRest | None:
+        """How a static stage fails to rest, if it does; the log tells of it."""
+        if stage.mode != "static" or stages.status(self, stage, outcome) is not None:
+            return None
+        self._no_rest = look(self, stage)
+        if self._no_rest is not None:
+            self.tell(f"warning: stage {stage.name} {self._no_rest.text()}")
+        return self._no_rest
 
     def _begin_stage(self) -> StageState:
         self.stage, self.ended_stage = stages.begin(self), None
@@ -356,7 +374,12 @@ class Simulation(RunState):
             "time": self.time - stage.start_time,
             "wall_time": stage.wall_time,
         }
-        self.finished_stages.append(row | ({"handed_over": True} if stage.handed_over else {}))
+        if stage.handed_over:
+            row["handed_over"] = True
+        if self._no_rest is not None:
+            row |= self._no_rest.as_dict()
+            self._no_rest = None
+        self.finished_stages.append(row)
         if self.results:
             for strain in large_strains(self):
                 self.results.log(f"warning: {strain.text()}")
@@ -441,7 +464,8 @@ class Simulation(RunState):
         assert self.results is not None
         path, arrays, attributes = self.results.read_checkpoint()
         restored.check_model(self, path, arrays, attributes, force=force)
-        if fault := restored.wrong_stage(attributes) or restored.wrong_numbers(self, attributes):
+        fault = restored.wrong_stage(attributes) or restored.wrong_looks(attributes)
+        if fault := fault or restored.wrong_numbers(self, attributes):
             raise CdemError(f"{path}: is damaged ({fault}); run the case again with --overwrite")
         begun = attributes.stage_index + (attributes.stage is not None)
         try:
@@ -470,6 +494,7 @@ class Simulation(RunState):
         """Give the arrays of a checkpoint to the core, if they are valid."""
         followed = {n: arrays.pop(n) for n in list(arrays) if n.startswith(PREFIX)}
         own = {name: arrays.pop(name) for name in super().kept if name in arrays}
+        own.setdefault("simulation.watched", self.watched)  # older checkpoints lack it, and looks
         fault = restored.wrong_kept(own, super().kept)
         fault = fault or restored.wrong_type(self.core, arrays)
         fault = fault or restored.wrong_state(arrays)
@@ -480,4 +505,5 @@ class Simulation(RunState):
         if fault:
             raise CdemError(f"{path}: is damaged ({fault}); run the case again with --overwrite")
         self.reference = own["simulation.reference"]
+        self.watched = own["simulation.watched"]
         self.build.born = own.get("simulation.born", self.build.born)

@@ -220,7 +220,24 @@ def release_part(sim: RunState, stage: StageState) -> bool:
     share = stage.parts / release.parts
     sim.core.release_forces(stage.held + share * (1 - release.to - stage.held), sim.time)
     stage.solved = ""
+    stage.watch_anew()
     return True
+
+
+def solve_is_due(sim: RunState, stage: StageState) -> bool:
+    """Whether a stage is to be solved for before its next step.
+
+    Where loads.velocities move supports, it would rest before these have moved anything.
+    """
+    case = sim.case
+    if case.stages[sim.stage_index].relax != "solve" or case.loads.velocities:
+        return False
+    return not (stage.solved or stage.handed_over or curves_run(sim, stage))
+
+
+def curves_run(sim: RunState, stage: StageState) -> bool:
+    """Whether curves still change a static stage: it has no rest before they are over."""
+    return sim.time < sim.begins[stage.name] + last_change(sim.case, stage.name)
 
 
 def solve(sim: RunState, stage: StageState) -> None:
@@ -239,11 +256,6 @@ def _solved(sim: RunState) -> str:
     """
     limit = sim.case.stages[sim.stage_index].tolerance
     assert limit is not None  # the case has filled it in
-    if sim.case.loads.velocities:  # it would rest before these have moved anything
-        return (
-            "relax: solve has no rest to find where loads.velocities move supports, so the stage goes "
-            "on as adaptive"
-        )
     state = keep(sim)
     rounds, iterations, before, after = sim.core.solve_for_rest(limit)
     if rounds > 0 and after < LEAST_GAIN * before:
@@ -254,7 +266,7 @@ def _solved(sim: RunState) -> str:
     bring_back(sim, state)
     if before <= limit:
         return "begins at rest: nothing to solve"
-    return "relax: solve found no rest nearby, so the stage goes on as adaptive"
+    return "a solve found no rest nearby: adaptive relaxation from the start"
 
 
 def may_hand_over(sim: RunState, stage: StageState) -> bool:
@@ -276,6 +288,7 @@ def relax_locally(sim: RunState, stage: StageState) -> tuple[str, int, float]:
         "by relax: local"
     )
     stage.handed_over = True
+    stage.watch_anew()
     sim.core.leave_adaptive()
     report = sim.core.run(1, relaxation="kinetic")  # this stops all motion
     damp_locally(sim)
@@ -332,10 +345,10 @@ def advance(sim: RunState, stage: StageState, steps: int, until: float) -> tuple
         assert (
             rules.tolerance is not None and rules.relax is not None
         )  # the case has filled them in
-        over = sim.begins[stage.name] + last_change(sim.case, stage.name)
-        changes = sim.time < over  # no rest before its curves are over
-        if rules.relax == "solve" and not (changes or stage.solved or stage.handed_over):
+        if solve_is_due(sim, stage):
             solve(sim, stage)
+        over = sim.begins[stage.name] + last_change(sim.case, stage.name)
+        changes = curves_run(sim, stage)
         report = sim.core.run(
             steps,
             end_time=min(until, over) if changes else until,

@@ -51,6 +51,10 @@ class StageState:
             nothing.
         handed_over: Static stage with `relax: adaptive` or `solve`: whether local damping goes on, as
             the energy balance did not close.
+        first_look: Step from which on the behaviour of a static stage is watched.
+        ways: Displacement of its farthest node since then at each look, over the mean face size.
+        ratios: Lowest unbalance ratio since then at each look.
+        wait: Steps of an elastic motion, or None as long as nobody has asked: see `patience`.
     """
 
     name: str
@@ -69,6 +73,14 @@ class StageState:
     held: float = 0.0
     solved: str = ""
     handed_over: bool = False
+    first_look: int = 0
+    ways: list[float] = field(default_factory=list)
+    ratios: list[float] = field(default_factory=list)
+    wait: int | None = None
+
+    def watch_anew(self) -> None:
+        """Forget the looks so far: what acts on the model has changed."""
+        self.ways, self.ratios = [], []
 
     def note(self, step: int, unbalance: float) -> str:
         """Advice about a static stage that does not come to rest, or nothing."""
@@ -150,7 +162,14 @@ class Attributes(BaseModel):
             quiet = stage.get("quiet")
             for kept, kind in ((stage, StageState), (quiet, Quiet)):
                 names = {one.name for one in fields(kind)}
-                late = {"solved", "handed_over"}  # older checkpoints lack them
+                late = {
+                    "solved",
+                    "handed_over",
+                    "first_look",
+                    "ways",
+                    "ratios",
+                    "wait",
+                }  # older checkpoints lack them
                 if not isinstance(kept, dict) or kept.keys() | late != names | late:
                     raise ValueError(f"not the values of a {kind.__name__}")
         return stage
@@ -178,6 +197,7 @@ class RunState:
         wall_time: Wall time spent in stages [s].
         settings: Values set by a script during the run.
         begins: Start times of the stages begun, by name [s].
+        watched: Positions at the first look at the running static stage [m], shape (nodes, 3).
     """
 
     audit: Audit
@@ -199,6 +219,7 @@ class RunState:
         self.wall_time = 0.0
         self.settings: list[Setting] = []
         self.begins: dict[str, float] = {}
+        self.watched = self.build.start_position
 
     def tell(self, text: str) -> None:
         """Take a line for the log of a run; here there is none."""
@@ -415,7 +436,7 @@ class RunState:
         """Arrays in a checkpoint besides those of the core, shape (nodes, 3)."""
         adds = any(stage.add for stage in self.case.stages)
         born = {"simulation.born": self.build.born} if adds else {}
-        return {"simulation.reference": self.reference} | born
+        return {"simulation.reference": self.reference, "simulation.watched": self.watched} | born
 
     def attributes(self, row_sums: str, rows: int, frames: int) -> Attributes:
         """Data in a checkpoint besides arrays, after this many rows of histories and frames."""

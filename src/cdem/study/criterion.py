@@ -13,8 +13,8 @@ from cdem.case.types import Name, Part, Quantity
 from cdem.errors import CaseError
 
 if TYPE_CHECKING:
+    from cdem.run.moving import Body
     from cdem.run.simulation import Simulation
-    from cdem.study.moving import Body
 
 CHIP = 1e-4
 """Volume of a chip, over the volume of all groups that are not fixed, unless a user gives it."""

@@ -14,21 +14,14 @@ from cdem.case.checks import SETTABLE
 from cdem.errors import CaseError
 from cdem.output.render import snapshot
 from cdem.run import stages
+from cdem.run.behaviour import LEAST_STEPS, UNKNOWN, patience
 from cdem.run.kept import bring_back, keep
+from cdem.run.moving import Body, lost_cohesion
 from cdem.run.simulation import Simulation
 from cdem.run.state import StageState
 from cdem.study.criterion import Criterion
-from cdem.study.moving import Body, lost_cohesion
 from cdem.study.strengths import HELD, StrengthReduction, keep_strengths
-from cdem.study.verdict import (
-    LEAST_STEPS,
-    UNKNOWN,
-    Seen,
-    Verdict,
-    patience,
-    rests,
-    stage_rests,
-)
+from cdem.study.verdict import Seen, Verdict, rests, stage_rests
 
 if TYPE_CHECKING:
     from cdem.model.audit import Audit
@@ -182,8 +175,9 @@ def find_critical(
     All stages except the last prepare the case with its own values. Each trial sets the value and
     runs the last stage, which must be static, from the state of the last stable trial. It is stable
     when the unbalance ratio falls below the stage's tolerance, and has failed according to
-    `criterion`. A trial ends as soon as a body slides; only the failure next to the critical value
-    is watched until it has moved by `travel`, and where it comes to rest after all, the search goes on.
+    `criterion`. Without bolts and water a trial ends as soon as a body slides; only the failure next
+    to the critical value is watched until it has moved by `travel`, and where it comes to rest after
+    all, the search goes on.
 
     If each value of a `parameter` makes another model (its geometry, its rock), each trial builds
     the model and runs all stages; every static stage must then come to rest.
@@ -211,12 +205,13 @@ def find_critical(
     search = (_Cold if cold else _Warm)(case, apply, criterion, threads, tell or (lambda _: None))
     found = Critical(np.nan, np.nan, criterion)
     step = partial(_attempt, search, found, report)
+    hasty = not (case.bolts or case.water)  # bolts tighten, and joints that water opens close again
     if between:
         _try_ends(between, partial(step, hasty=False))
     else:
-        _widen(partial(step, hasty=True), *first)
+        _widen(partial(step, hasty=hasty), *first)
     search.begin_bisection()
-    _narrow(found, step, tolerance)
+    _narrow(found, step, tolerance, hasty)
     found.broken, found.audit = search.broken_at_rest(), search.sim.audit
     return found
 
@@ -237,9 +232,8 @@ def _attempt(
     return trial
 
 
-def _narrow(found: Critical, step: Callable[..., Trial], tolerance: float) -> None:
+def _narrow(found: Critical, step: Callable[..., Trial], tolerance: float, hasty: bool) -> None:
     """Bisect until the bracket is narrow and its failure is sure."""
-    hasty = True
     while True:
         while abs(found.stable - found.failed) > tolerance:
             step(found.value, hasty=hasty)

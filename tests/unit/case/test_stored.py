@@ -39,7 +39,7 @@ stages:
 def test_what_a_case_leaves_out_does_not_depend_on_its_version(version):
     case = Case.from_dict(CASE | version)
     rest, fall, own = case.stages
-    assert (rest.relax, rest.damping.local, rest.damping.contact) == ("adaptive", 0.0, 0.0)
+    assert (rest.relax, rest.damping.local, rest.damping.contact) == ("solve", 0.0, 0.0)
     assert (fall.relax, fall.damping.local, fall.damping.contact) == (None, 0.0, 0.1)
     assert (own.relax, own.damping.local, own.damping.contact) == ("kinetic", 0.0, 0.3)
     assert case.moved_masses == "lumped-while-bonded"

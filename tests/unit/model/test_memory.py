@@ -12,6 +12,7 @@ import pytest
 from shared.machine import of_the_cpu
 
 from cdem import Case
+from cdem.errors import ModelError
 from cdem.model import memory
 
 CASE = """\
@@ -63,7 +64,7 @@ def test_a_solve_is_part_of_the_need(tmp_path):
     file = write(tmp_path / "r.yaml", [12, 12, 12], "tet4", "elements", 1e6)
     floor = "supports: [{surface: {group: r, normal: [0, 0, -1]}, fix: [x, y, z]}]"
     text = file.read_text().replace("-10]}", f"-10], {floor}}}")
-    text = text.replace('dynamic, duration: "5 ms"', "static, relax: solve, max_steps: 1")
+    text = text.replace('dynamic, duration: "5 ms"', "static, max_steps: 1")
     file.write_text(text.replace("cohesion: 1000000.0", "cohesion: 1e9, tensile_strength: 1e9"))
     code = (
         f"import cdem; cdem.Simulation({str(file)!r}, threads=1).run();"
@@ -74,6 +75,20 @@ def test_a_solve_is_part_of_the_need(tmp_path):
     pieces = memory.pieces_of_boxes(Case.load(file))
     assert memory.need(pieces, solves=True) == pytest.approx(peak, rel=0.25)
     assert memory.need(pieces, solves=True) > 1.5 * memory.need(pieces)
+
+
+def test_a_model_that_fits_without_a_solve_is_told_so(tmp_path, monkeypatch):
+    """Only then: for a model that fits by no way the words would not help."""
+    file = write(tmp_path / "r.yaml", [40, 40, 40], "tet4", "elements", 1e6)
+    file.write_text(file.read_text().replace('dynamic, duration: "5 ms"', "static"))
+    case = Case.load(file)
+    pieces = memory.pieces_of_boxes(case)
+    between = 0.5 * (memory.need(pieces) + memory.need(pieces, solves=True))
+    for free, told in ((between, True), (0.9 * memory.need(pieces), False)):
+        monkeypatch.setattr(memory, "room", lambda free=free: (free, "the test"))
+        with pytest.raises(ModelError) as error:
+            memory.check_memory(case, pieces)
+        assert ("or relax: adaptive in static stages, which takes" in str(error.value)) == told
 
 
 def test_boxes_too_large_are_refused_before_they_are_made(tmp_path):

@@ -66,6 +66,10 @@ class Core:
         self._clock.now += self._clock.pace * (self._core.scalars()["step"] - before)
         return report
 
+    def solve_for_rest(self, limit):
+        self._clock.now += 5
+        return self._core.solve_for_rest(limit)
+
     def set_interfaces(self, entries):
         if all(e["parameters"]["cohesion"] == 0 for e in entries):
             self._clock.pace = 2.0
@@ -118,6 +122,20 @@ def test_a_static_stage_is_measured_on_its_way_to_rest(monkeypatch, way):
     sim, found = measured(monkeypatch, text)
     assert found.stages[0].wall_time is None
     assert sim.core.ways == {("none" if way == "local" else way, 1e-6)}
+
+
+def test_a_solve_is_measured_by_itself(monkeypatch):
+    """It takes the time that the core takes for it; one that is not made is not told."""
+    stages = "[{name: rest, mode: static, relax: WAY}, {name: again, mode: static, relax: WAY}]"
+    found = {}
+    for way in ("solve", "adaptive"):
+        text = re.sub(r"  velocities: .*\n", "", WALL)
+        text = re.sub(r"stages: .*", f"stages: {stages.replace('WAY', way)}", text)
+        found[way] = measured(monkeypatch, text)[1]
+    assert [stage.solve_seconds for stage in found["adaptive"].stages] == [0, 0]
+    assert [stage.solve_seconds for stage in found["solve"].stages] == [5, 5]
+    assert "stage rest: a solve of 5 s, then " in found["solve"].text()
+    assert "a solve" not in found["adaptive"].text()
 
 
 def test_a_stage_is_measured_up_to_its_end_and_leads_to_the_next(monkeypatch):

@@ -11,7 +11,7 @@ import cdem
 from cdem.case.output_fields import OUTPUT_FIELDS
 from cdem.joints import directions
 from cdem.output.render import snapshot
-from cdem.run.fields import pieces_of, surface_of, values_of, visible_faces
+from cdem.run.fields import bonds_of, pieces_of, surface_of, values_of, visible_faces
 
 
 @pytest.mark.parametrize(("kind", "divisions"), [("quads", [1, 1, 1]), ("overlaps", [2, 1, 1])])
@@ -74,3 +74,18 @@ def test_faces_that_met_slide_and_part(shape):
     assert touch.sum() >= 2
     assert values["slip"] == pytest.approx(0.3 * touch)
     assert values["opening"] == pytest.approx(0.1 * touch)
+
+
+def test_bonds_of_faces_that_do_not_match_are_whole_at_the_start():
+    """The last overlap counted what lies behind the list of points."""
+    above = {"group": "a", "box": {"size": [1, 1, 0.5]}, "translate": [0.3, 0.1, 0]}
+    below = {
+        "group": "b",
+        "box": {"size": [2, 2, 0.5], "divisions": [2, 2, 1], "shape": "tet4"},
+        "translate": [0, 0, -0.5],
+    }
+    bond = {"friction_angle": 30, "cohesion": 1e6, "tensile_strength": 1e6}
+    sim = simulate([above, below], {"a": {}, "b": {}}, interfaces={"default": bond})
+    assert sim.audit.counts["bonded_pairs"] > 0
+    intact = bonds_of(sim)[1]
+    assert (intact == 1).all()

@@ -24,7 +24,7 @@ def searched(holds, tightens=0.0, tolerance=0.01):
         return found.trials[-1]
 
     _widen(partial(step, hasty=True), 1.0, 1.5)
-    _narrow(found, step, tolerance)
+    _narrow(found, step, tolerance, hasty=True)
     return found
 
 

@@ -4,8 +4,9 @@ from types import SimpleNamespace
 
 import numpy as np
 
+from cdem.run.behaviour import LEAST_STEPS, UNKNOWN
 from cdem.study.criterion import Criterion
-from cdem.study.verdict import LEAST_STEPS, LOOK, UNKNOWN, _Watch
+from cdem.study.verdict import LOOK, _Watch
 
 
 def watch_of(looks, wait=LEAST_STEPS):

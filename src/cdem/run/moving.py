@@ -13,7 +13,7 @@ from cdem.mesh.arrays import components
 from cdem.model.faces import face_areas
 from cdem.model.interfaces import interfaces_of, name_of
 from cdem.run.fields import bonds_of, group_of
-from cdem.run.simulation import Simulation
+from cdem.run.state import RunState
 from cdem.units import coordinates
 
 Floats = NDArray[np.float64]
@@ -83,14 +83,14 @@ class Body:
         )
 
 
-def moving_bodies(sim: Simulation, start: Floats) -> list[Body]:
+def moving_bodies(sim: RunState, start: Floats) -> list[Body]:
     """Bodies that have moved since a start, the largest first.
 
     An element moves if its displacement is more than `MOVES` of the largest. Moving elements are of
     one body if they share nodes, or if faces of them touched at the start or do now.
 
     Args:
-        sim: A simulation.
+        sim: A run.
         start: Positions of the nodes at the start [m], shape (nodes, 3).
     """
     t = sim.build.topology
@@ -108,14 +108,14 @@ def moving_bodies(sim: Simulation, start: Floats) -> list[Body]:
     return sorted(found, key=lambda body: -body.volume)
 
 
-def _touching(sim: Simulation) -> NDArray[np.int32]:
+def _touching(sim: RunState) -> NDArray[np.int32]:
     """Pairs of faces that touched at the start, or touch now, shape (pairs, 2)."""
     t, now = sim.build.topology, sim.contacts
     contacts = np.column_stack([now["mother_face"], now["target_face"]])
     return np.concatenate([t.pair_faces, t.overlap_faces, contacts]).astype(np.int32)
 
 
-def _labels(sim: Simulation, moves: NDArray[np.bool_]) -> NDArray[np.int64]:
+def _labels(sim: RunState, moves: NDArray[np.bool_]) -> NDArray[np.int64]:
     """A number of each element, the same for all moving elements of a body."""
     t, count = sim.build.topology, len(moves)
     at, ends, first = [], [], 0
@@ -132,7 +132,7 @@ def _labels(sim: Simulation, moves: NDArray[np.bool_]) -> NDArray[np.int64]:
 
 
 def _body(
-    sim: Simulation,
+    sim: RunState,
     mine: NDArray[np.bool_],
     moves: NDArray[np.bool_],
     moved: Floats,
@@ -159,7 +159,7 @@ def _body(
     )
 
 
-def _through(sim: Simulation, mine: NDArray[np.bool_], moved: Floats) -> list[Slip]:
+def _through(sim: RunState, mine: NDArray[np.bool_], moved: Floats) -> list[Slip]:
     """Interfaces between a body and the other elements."""
     b, t = sim.build, sim.build.topology
     faces = np.concatenate([t.pair_faces, t.overlap_faces])
@@ -180,7 +180,7 @@ def _through(sim: Simulation, mine: NDArray[np.bool_], moved: Floats) -> list[Sl
     return sorted(found, key=lambda s: -s.area)
 
 
-def _areas(sim: Simulation, faces: NDArray[np.int32]) -> Floats:
+def _areas(sim: RunState, faces: NDArray[np.int32]) -> Floats:
     """Areas on which pairs of faces touched at the start [m2]; overlaps, if any, come last."""
     b, t = sim.build, sim.build.topology
     overlaps = len(t.overlap_faces)
@@ -191,7 +191,7 @@ def _areas(sim: Simulation, faces: NDArray[np.int32]) -> Floats:
     return np.concatenate([areas, np.add.reduceat(t.overlap_area, t.overlap_first[:-1])])
 
 
-def lost_cohesion(sim: Simulation) -> dict[str, float]:
+def lost_cohesion(sim: RunState) -> dict[str, float]:
     """Broken part of the bonded area of each interface that has strength now, by its name."""
     b, t = sim.build, sim.build.topology
     faces, intact = bonds_of(sim)
