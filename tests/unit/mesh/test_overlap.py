@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scenes import case
 
-from cdem.mesh.overlap import clip, flush_faces, point_areas
+from cdem.mesh.overlap import clip, flush_faces, inner_part, point_areas
 from cdem.run.simulation import Simulation
 
 
@@ -31,6 +31,14 @@ def test_overlap_shares_area_and_centroid_exactly(dx, dy, angle, size):
     center = np.array([((x + x1) * cross).sum(), ((y + y1) * cross).sum()]) / (3 * cross.sum())
     assert weights.sum() == pytest.approx(area, rel=1e-9)
     np.testing.assert_allclose(weights @ polygon[:, :2] / area, center, atol=1e-9)
+
+
+def test_the_inner_part_of_a_polygon_ends_where_the_function_is_zero():
+    square = np.array([[0, 0, 1], [2, 0, 1], [2, 2, 1], [0, 2, 1]], float)
+    half = inner_part(square, square[:, 0] - 0.5)
+    assert sorted(map(tuple, half)) == [(0.5, 0, 1), (0.5, 2, 1), (2, 0, 1), (2, 2, 1)]
+    np.testing.assert_array_equal(inner_part(square, square[:, 2]), square)
+    assert inner_part(square, -square[:, 2]).shape == (0, 3)
 
 
 def test_faces_that_lie_flush_are_found_whether_they_conform_or_not():
