@@ -13,6 +13,7 @@ inline Real in_series(Real a, Real b) { return a > 0 && b > 0 ? a * b / (a + b) 
 
 /// A spring between two points of bolts, without a stiffness.
 inline NodeSpring between(const SolveBolt& b, Index p, Index q) {
+  static_assert(2 * bolt_hosts <= NodeSpring::most);
   NodeSpring spring;
   for (const Index point : {p, q})
     for (std::size_t k = std::size_t(point) * bolt_hosts; k < std::size_t(point + 1) * bolt_hosts;

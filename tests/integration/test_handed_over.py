@@ -8,7 +8,8 @@ from scenes import case
 
 import cdem
 from cdem.errors import UnstableError
-from cdem.run.state import Attributes, StageState
+from cdem.run.stage_state import StageState
+from cdem.run.state import Attributes
 from cdem.verification.dry_wall.problem import wall
 
 BED = {"group": "bed", "box": {"size": [4, 4, 0.5], "divisions": [8, 4, 1]},

@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 from cdem.run import stages
 from cdem.run.kept import bring_back, keep
 from cdem.run.moving import Body, moving_bodies
-from cdem.run.state import RunState, StageState
+from cdem.run.stage_state import StageState
+from cdem.run.state import RunState
 from cdem.units import coordinates
 
 Floats = NDArray[np.float64]
@@ -148,27 +149,32 @@ class NoRest:
         return {"no_rest": self.text(), "moving": [body.as_dict() for body in self.bodies]}
 
 
-def look(sim: RunState, stage: StageState) -> NoRest | None:
-    """Look at a static stage of a run at a row of its history; returns how it ends, if it does.
+def look(sim: RunState, stage: StageState, outcome: str) -> NoRest | None:
+    """Look at a stage of a run at a row of its history.
 
     A body moves if it has slid for `UNKNOWN` steps and by more than the mean face size. It moves or
     creeps if this is so after `LONG` steps and it is still moving by `FAR`. Where the unbalance has
     not halved in the last half of four times as many, blocks chatter, or the end is undecided. All
     of this must be true after the wait of `patience` as well, or four times that where nothing has
     moved by a face.
+
+    Returns:
+        How it ends, if it is static and finds no rest; the log tells of it.
     """
+    if stage.mode != "static" or stages.status(sim, stage, outcome) is not None:
+        return None
     if stages.curves_run(sim, stage):
         stage.watch_anew()
         return None
-    ways, size = ways_from(sim, sim.watched), face_size(sim)
     ratio = float(sim.core.unbalance_ratio())
     if not stage.ways:
         sim.watched = sim.fields["position"].copy()
-        stage.ways, stage.ratios, stage.first_look = [0.0], [ratio], sim.step_count
+        stage.ways, stage.ratios = [0.0], [ratio]
         return None
-    stage.ways.append(float(ways.max()) / size)
+    ways = ways_from(sim, sim.watched)
+    stage.ways.append(float(ways.max()) / face_size(sim))
     stage.ratios.append(min(stage.ratios[-1], ratio))
-    done = sim.step_count - stage.first_look
+    done = stages.STATIC_RECORD_STEPS * (len(stage.ways) - 1)
     status = _status(stage, done)
     if status is None:
         return None
@@ -180,7 +186,9 @@ def look(sim: RunState, stage: StageState) -> NoRest | None:
         f"than {stage.ratios[-1]:.2g}"
     )
     bodies = moving_bodies(sim, sim.watched) if status in ("moving", "creeping") else []
-    return NoRest(status, why, bodies)
+    found = NoRest(status, why, bodies)
+    sim.tell(f"warning: stage {stage.name} {found.text()}")
+    return found
 
 
 def _status(

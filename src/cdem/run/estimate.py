@@ -16,7 +16,8 @@ from cdem.case.laws import INTERFACE_LAWS
 from cdem.model.interfaces import interfaces_of
 from cdem.model.stiffness import interface_entries
 from cdem.run import stages
-from cdem.run.state import RunState, StageState
+from cdem.run.stage_state import StageState
+from cdem.run.state import RunState
 
 SECONDS = 1.0
 """Wall time given to each measurement [s]."""

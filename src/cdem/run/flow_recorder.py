@@ -13,7 +13,8 @@ from cdem.mesh.hdf5_links import refuse_links
 from cdem.rows import rows_of
 from cdem.run.fields import block_of, group_of, pieces_of
 from cdem.run.flow_maps import LAYERS, FlowMaps, Moment
-from cdem.run.state import RunState, StageState
+from cdem.run.stage_state import StageState
+from cdem.run.state import RunState
 from cdem.whole_files import replaced
 
 Floats = NDArray[np.float64]

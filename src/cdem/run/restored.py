@@ -15,7 +15,8 @@ from cdem._version import __version__
 from cdem.errors import CdemError
 from cdem.run.flow_recorder import PREFIX
 from cdem.run.history_file import SUM_DIGITS
-from cdem.run.state import Attributes, RunState, StageState
+from cdem.run.stage_state import StageState
+from cdem.run.state import Attributes, RunState
 
 if TYPE_CHECKING:
     from cdem._core import Core

@@ -7,7 +7,8 @@ from pathlib import Path
 
 from cdem.model.ruling_step import ruling_step
 from cdem.run.progress import Progress
-from cdem.run.state import RunState, StageState
+from cdem.run.stage_state import StageState
+from cdem.run.state import RunState
 
 
 def progress(run: RunState, stage: StageState, speed: float, note: str) -> Progress:

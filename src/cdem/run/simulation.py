@@ -28,7 +28,8 @@ from cdem.run.fast_weakening import FastWeakening, fast_weakenings
 from cdem.run.flow_recorder import PREFIX, FlowRecorder
 from cdem.run.law_fields import large_strains, yielded_counts
 from cdem.run.progress import Progress
-from cdem.run.state import Attributes, RunState, Setting, StageState
+from cdem.run.stage_state import StageState
+from cdem.run.state import Attributes, RunState, Setting
 
 if TYPE_CHECKING:
     from cdem.run.result_folder import Results
@@ -331,24 +332,15 @@ class Simulation(RunState):
         if stages.record_is_due(self, stage, outcome) or ended:
             self._log_departures()
             stages.look_for_rest(self, stage)
-            no_rest = self._look_for_failure(stage, outcome)
-            last = ended or no_rest is not None
+            self._no_rest = look(self, stage, outcome)
+            last = ended or self._no_rest is not None
             self._record(frame=last or stages.frame_is_due(self, stage, outcome))
             if self._check(stage):
                 outcome = "steps_done"  # rest is sought anew
             self._look_at_weakening()
-            if no_rest is not None:
-                return no_rest.status
+            if self._no_rest is not None:
+                return self._no_rest.status
         return stages.status(self, stage, outcome) or ("ended" if ended else None)
-
-    def _look_for_failure(self, stage: StageState, outcome: str) -> NoRest | None:
-        """How a static stage fails to rest, if it does; the log tells of it."""
-        if stage.mode != "static" or stages.status(self, stage, outcome) is not None:
-            return None
-        self._no_rest = look(self, stage)
-        if self._no_rest is not None:
-            self.tell(f"warning: stage {stage.name} {self._no_rest.text()}")
-        return self._no_rest
 
     def _begin_stage(self) -> StageState:
         self.stage, self.ended_stage = stages.begin(self), None

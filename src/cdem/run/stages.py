@@ -18,7 +18,8 @@ from cdem.model.interfaces import bonded_pairs, interfaces_of
 from cdem.model.supports import held_components, supports_of
 from cdem.rows import rows_of
 from cdem.run.kept import bring_back, keep
-from cdem.run.state import RunState, Setting, StageState
+from cdem.run.stage_state import StageState
+from cdem.run.state import RunState, Setting
 
 STATIC_RECORD_STEPS = 200
 """Steps between history rows of a static stage, which has no meaningful time."""

@@ -8,8 +8,8 @@ from scenes import case
 
 import cdem
 from cdem.run.behaviour import LONG, UNKNOWN, Look, _status, behaviour
+from cdem.run.stage_state import StageState
 from cdem.run.stages import STATIC_RECORD_STEPS
-from cdem.run.state import StageState
 
 
 def status(steps, way, ratio):
