@@ -432,3 +432,27 @@ def test_a_page_for_a_client(tmp_path, monkeypatch):
         app, [*words[:2], "--parameter", "loads.gravity.2", "--between", "-9", "-20", "--report"]
     )
     assert refused.exit_code == 2 and "--report goes with --factor" in refused.output
+
+
+def test_a_stone_that_falls_before_the_search_is_no_travel():
+    """It drops by 2 cm onto the bed; the block beside it slides at its friction angle.
+
+    Blocks that rest after they have slid are told, with how far.
+    """
+    t = np.radians(10)
+    blocks = [
+        {"group": "block", "box": {"size": [1, 1, 0.5]}, "translate": [1, 1, 0]},
+        {"group": "stone", "box": {"size": [1, 1, 0.5]}, "translate": [5, 1, 0.02]},
+        {"group": "bed", "box": {"size": [9, 3, 1]}, "translate": [0, 0, -1]},
+    ]
+    data = case(
+        blocks,
+        {"block": {}, "stone": {}, "bed": {"fix": ["x", "y", "z"]}},
+        interfaces={"default": {"friction_angle": 20}},
+        loads={"gravity": [9.81 * math.sin(t), 0, -9.81 * math.cos(t)]},
+        stages=[{"name": "rest", "mode": "static"}],
+    )
+    found = find_factor(data, criterion=Criterion(most_moved=0.01), threads=1).kept
+    theory = math.tan(math.radians(20)) / math.tan(t)
+    assert found.value == pytest.approx(theory, rel=0.01)
+    assert found.slip == 0

@@ -67,4 +67,12 @@ FAULTS = [
         "",
         "tests/unit/run/test_behaviour.py",
     ),
+    Mutant(
+        "travel of the hold",
+        "--travel counts what falls before the search begins",
+        "src/cdem/study/critical.py",
+        'update={"most_moved": None}',
+        "update={}",
+        "tests/validation/test_critical.py::test_a_stone_that_falls_before_the_search_is_no_travel",
+    ),
 ]

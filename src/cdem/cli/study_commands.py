@@ -185,7 +185,9 @@ def _factor_lines(found: FactorOfSafety) -> Iterator[str]:
 
 
 def _failure_lines(found: Critical) -> Iterator[str]:
-    """What fails just above the critical value, and what was too small to count."""
+    """Slip below the critical value, what fails just above, and what was too small to count."""
+    if caution := found.caution():
+        yield f"  warning: {caution}"
     trial = found.trial_that_failed
     for body in trial.bodies[:MOST_BODIES]:
         yield f"  fails at {found.failed:.6g}: {body.text()}"

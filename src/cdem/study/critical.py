@@ -14,11 +14,11 @@ from cdem.case.checks import SETTABLE
 from cdem.errors import CaseError
 from cdem.output.render import snapshot
 from cdem.run import stages
-from cdem.run.behaviour import LEAST_STEPS, UNKNOWN, patience
+from cdem.run.behaviour import LEAST_STEPS, UNKNOWN, face_size, patience
 from cdem.run.kept import bring_back, keep
 from cdem.run.moving import Body, lost_cohesion
 from cdem.run.simulation import Simulation
-from cdem.run.state import StageState
+from cdem.run.stage_state import StageState
 from cdem.study.criterion import Criterion
 from cdem.study.strengths import HELD, StrengthReduction, keep_strengths
 from cdem.study.verdict import Seen, Verdict, rests, stage_rests
@@ -75,6 +75,8 @@ class Critical:
         body: The model at the end of the trial at `failed`.
         broken: Broken part of the bonded area of each interface at rest at `stable` [1], by name.
         audit: The report on the model.
+        slip: Movement of the farthest node after which the case rests at `stable`, where it is more
+            than half of the criterion's `travel`; else 0 [m].
     """
 
     stable: float
@@ -84,6 +86,7 @@ class Critical:
     body: Surface | None = field(default=None, compare=False)
     broken: dict[str, float] = field(default_factory=dict)
     audit: Audit | None = field(default=None, compare=False)
+    slip: float = 0.0
 
     @property
     def trial_that_failed(self) -> Trial:
@@ -94,6 +97,16 @@ class Critical:
     def value(self) -> float:
         """The middle of the bracket."""
         return 0.5 * (self.stable + self.failed)
+
+    def caution(self) -> str:
+        """A sentence where the case rests only after a slip; else empty."""
+        if not self.slip:
+            return ""
+        return (
+            f"at {self.stable:.6g} it rests only after a slip of {self.slip:.2g} m: supports have "
+            "stretched, joints have closed, or blocks have caught on edges that they slid past, which "
+            "makes the factor too high; --travel LENGTH counts more slip than that as failure"
+        )
 
     def nearest_failure(self) -> float:
         """The value next to `stable` whose last trial failed, or nan."""
@@ -109,6 +122,7 @@ class Critical:
             "failed": self.failed,
             "criterion": self.criterion.model_dump(),
             "broken": self.broken,
+            "slip": self.slip,
             "trials": [t.as_dict() for t in self.trials],
         }
 
@@ -213,6 +227,8 @@ def find_critical(
     search.begin_bisection()
     _narrow(found, step, tolerance, hasty)
     found.broken, found.audit = search.broken_at_rest(), search.sim.audit
+    moved = next(t.moved for t in reversed(found.trials) if t.value == found.stable)
+    found.slip = moved if moved > 0.5 * criterion.travel * face_size(search.sim) else 0.0
     return found
 
 
@@ -364,7 +380,8 @@ class _Warm:
         before = sim.step_count
         stages.solve(sim, stage)
         known = self.wait or patience(sim)
-        verdict = rests(sim, stage, self.criterion, known or UNKNOWN)
+        held = self.criterion.model_copy(update={"most_moved": None})  # it counts from now on
+        verdict = rests(sim, stage, held, known or UNKNOWN)
         if not verdict.stable:
             bodies = "".join(f"; {body.text()}" for body in verdict.bodies[:1])
             raise CaseError(

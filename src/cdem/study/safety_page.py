@@ -54,10 +54,15 @@ def write_safety_page(
         strengths=list(_strengths(case)),
         actions=list(_actions(case)),
         criterion=found.kept.criterion.text(),
-        warnings=audit.warnings,
+        warnings=audit.warnings + _cautions(found),
         model=audit.text(),
     )
     write_text(path, html)
+
+
+def _cautions(found: FactorOfSafety) -> list[str]:
+    both = ((KEPT, found.kept), (WRITTEN, found.written))
+    return [f"{name}: {text}" for name, one in both if one and (text := one.caution())]
 
 
 def _factors(found: FactorOfSafety) -> Any:

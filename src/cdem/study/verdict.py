@@ -22,7 +22,7 @@ from cdem.run.behaviour import (
 )
 from cdem.run.moving import Body, moving_bodies
 from cdem.run.simulation import CHECK_INTERVAL, Simulation
-from cdem.run.state import StageState
+from cdem.run.stage_state import StageState
 from cdem.study.criterion import Criterion
 
 Floats = NDArray[np.float64]

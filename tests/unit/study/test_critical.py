@@ -41,3 +41,10 @@ def test_where_what_slides_comes_to_rest_the_search_goes_on(tightens):
     found = searched(1.2, tightens)
     assert found.stable <= 1.2 + tightens < found.failed <= found.stable + 0.01
     assert found.trial_that_failed.sure
+
+
+def test_a_slip_before_rest_is_told():
+    found = searched(1.2)
+    assert found.caution() == ""
+    found.slip = 0.043
+    assert "rests only after a slip of 0.043 m" in found.caution()
