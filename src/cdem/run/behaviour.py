@@ -152,11 +152,11 @@ class NoRest:
 def look(sim: RunState, stage: StageState, outcome: str) -> NoRest | None:
     """Look at a stage of a run at a row of its history.
 
-    A body moves if it has slid for `UNKNOWN` steps and by more than the mean face size. It moves or
-    creeps if this is so after `LONG` steps and it is still moving by `FAR`. Where the unbalance has
-    not halved in the last half of four times as many, blocks chatter, or the end is undecided. All
-    of this must be true after the wait of `patience` as well, or four times that where nothing has
-    moved by a face.
+    A body moves if it slides or creeps after `UNKNOWN` steps and by more than the mean face size. It
+    moves if it slides, or creeps, after `LONG` steps if it is still moving by `FAR`. Where the
+    unbalance has not halved in the last half of four times as many, blocks chatter, or the end is
+    undecided. Unless a block has fallen past the edge, all of this must be true after the wait of
+    `patience` as well, or four times that where nothing has moved by a face.
 
     Returns:
         How it ends, if it is static and finds no rest; the log tells of it.
@@ -178,9 +178,10 @@ def look(sim: RunState, stage: StageState, outcome: str) -> NoRest | None:
     status = _status(stage, done)
     if status is None:
         return None
-    stage.wait = stage.wait or patience(sim) or UNKNOWN
-    if done < (stage.wait if stage.ways[-1] > 1 else 4 * stage.wait):
-        return None
+    if not len(sim.fallen):
+        stage.wait = stage.wait or patience(sim) or UNKNOWN
+        if done < (stage.wait if stage.ways[-1] > 1 else 4 * stage.wait):
+            return None
     why = (
         f"in {done:,} steps {place_of(sim, ways)}, {speed_of(sim):.2g} m/s, unbalance ratio no lower "
         f"than {stage.ratios[-1]:.2g}"
@@ -201,7 +202,7 @@ def _status(
     path = np.abs(np.diff(half)).sum()
     goes = half[-1] - half[0] > ONWARD * path
     saw = behaviour(looks) if goes else None
-    if saw == "sliding" and half[-1] > 1:
+    if saw and half[-1] > 1:
         return "moving"
     if saw and done >= LONG and half[-1] - half[0] > FAR:
         return "moving" if saw == "sliding" else "creeping"

@@ -45,6 +45,7 @@ def test_a_force_that_falls_too_slowly_creeps():
         return (1 + step) ** -0.3
 
     assert status(LONG, lambda k: k / LONG, slow) == "creeping"
+    assert status(UNKNOWN, lambda k: 2 * k / UNKNOWN, slow) == "moving"  # by more than a face
     assert status(4 * LONG, lambda k: k / LONG, lambda k: (1 + k) ** -1.1) is None
 
 
