@@ -268,9 +268,9 @@ def check_sound(mutants: Iterable[Mutant]) -> None:
     """Without a fault all tests pass; end if they do not."""
     build((*MODULE, "--tests"))
     tests = {mutant.test for mutant in mutants if not is_core_test(mutant.test)}
-    words = sorted({word for test in tests for word in test.split()})
-    sound: list[tuple[str, ...]] = [CORE_TESTS]
-    sound += [(*PYTEST, *words)] if words else []
+    files = sorted({test for test in tests if " " not in test})
+    sound = [CORE_TESTS, *(command_of(test) for test in sorted(tests.difference(files)))]
+    sound += [(*PYTEST, *files)] if files else []
     for command in sound:
         test = failed(command, LIMIT_SUITE)
         if test:
