@@ -15,7 +15,7 @@ FAULTS = [
         "areas of new ones",
         "a contact that begins has a share of the area at once",
         "core/contact/force/contact_laws.hpp",
-        "const T ratio = select(pressed, spring.stiffness.n * area, none);",
+        "const T ratio = select(has, spring.stiffness.n * area, none);",
         "const T ratio = spring.stiffness.n * area;",
         "tests/core/contact/force/test_contact_area.cpp",
     ),
@@ -258,6 +258,24 @@ FAULTS = [
         "abs_of(dot(seam.normal, point - shape.center())) < rules.indentation * length",
         "abs_of(dot(seam.normal, point - shape.center())) < 1e9 * length",
         "tests/validation/test_flush_blocks.py::test_a_face_that_its_neighbour_has_left_is_a_target_again",
+    ),
+    Mutant(
+        "met for ever",
+        "faces that began with a corner at one place hide nothing, however far they part",
+        "core/contact/narrow_phase/flush_faces.hpp",
+        "if (dot(apart, apart) < room * room) return true;",
+        "if (dot(apart, apart) < 1e9) return true;",
+        "tests/validation/test_flush_blocks.py::"
+        "test_a_block_slides_on_over_the_joint_that_it_was_cut_by",
+    ),
+    Mutant(
+        "area of a corner",
+        "a corner has the area of the face beside it",
+        "core/contact/force/contact_laws.hpp",
+        "static constexpr Real parallel = 0.94;",
+        "static constexpr Real parallel = 0.02;",
+        "tests/validation/test_flush_blocks.py::"
+        "test_an_open_joint_gives_no_area_to_the_corner_beside_it",
     ),
     Mutant(
         "room beyond a seam",

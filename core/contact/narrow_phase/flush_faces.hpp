@@ -16,12 +16,18 @@ struct FlushFaces {
   const Index* mate;        // faces of other blocks, ascending in a row
   const Index* edge_faces;  // [edge][2] of one block, or -1
 
-  /// Did two exposed faces begin with a corner at one place? Their blocks meet in the seams of
-  /// others there, and neither hides the other.
-  CDEM_HD static bool met(const FaceColumns& faces, const ExposedRow& a, const ExposedRow& b) {
+  /// Have two exposed faces a corner where it began, at one place? Their blocks meet in the seams
+  /// of others there, and neither hides the other.
+  CDEM_HD static bool meet(const FaceColumns& faces, const SearchRules& rules, const ExposedRow& a,
+                           const ExposedRow& b) {
+    const Real room = rules.tolerance * min_of(a.reach, b.reach);
     for (Index i = 0; i < 4; ++i)
-      for (Index j = 0; j < 4; ++j)
-        if (faces.node_place[a.corner[i]] == faces.node_place[b.corner[j]]) return true;
+      for (Index j = 0; j < 4; ++j) {
+        const Index p = a.corner[i], q = b.corner[j];
+        if (faces.node_place[p] != faces.node_place[q]) continue;
+        const Vec3<Real> apart = faces.nodes.position(p) - faces.nodes.position(q);
+        if (dot(apart, apart) < room * room) return true;
+      }
     return false;
   }
 
@@ -145,7 +151,8 @@ struct HiddenEdges {
   /// Is a contact of two sides inside the surface that one of their blocks makes with others that
   /// lie flush?
   CDEM_HD bool hide(Index mother, Index target) const {
-    if (!flush.first || flush.met(faces, geometry.table[mother / 4], geometry.table[target / 4]))
+    if (!flush.first ||
+        flush.meet(faces, rules, geometry.table[mother / 4], geometry.table[target / 4]))
       return false;
     const Index side[2] = {mother, target};
     Vec3<Real> x[2], along[2];

@@ -341,7 +341,8 @@ struct ResolveTargets : FaceSearch {
   /// Is a contact of vertex k of exposed face m with t inside the surface that one of their blocks
   /// makes with others that lie flush?
   CDEM_HD bool hidden(Index m, Index k, Index t, const Seeker& s) const {
-    if (!flush.first || flush.met(faces, geometry.table[m], geometry.table[t])) return false;
+    if (!flush.first || flush.meet(faces, rules, geometry.table[m], geometry.table[t]))
+      return false;
     const Index face = exposed_face[m], target = exposed_face[t];
     const Vec3<Real> n = geometry.normal(t);
     if (flush.cover(faces, rules, target, s.p - plane_gap(s.p, t) * n, s.node)) return true;
