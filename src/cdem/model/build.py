@@ -251,8 +251,7 @@ def _assemble(
 ) -> Assembly:
     """Arrays of the core, with the present supports and loads of the case.
 
-    Mass scaling is as given, or follows from the case. Elements have no stress when
-    their nodes are at `born`.
+    Mass scaling is as given, or follows from the case. Elements at `born` have no stress.
     """
     names = topology.group_names
     entries = interface_entries(case, laws, names, topology.node_position)
