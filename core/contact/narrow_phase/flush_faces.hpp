@@ -1,8 +1,10 @@
-// flush_faces.hpp - parts of initially flush blocks that are hidden from third blocks.
+// flush_faces.hpp - parts of initially flush blocks that are hidden from third blocks, and sharp
+// rims.
 #pragma once
 
 #include "core/contact/geometry/edge.hpp"
 #include "core/contact/geometry/face_geometry.hpp"
+#include "core/contact/narrow_phase/beside_rim.hpp"
 #include "core/records/rules.hpp"
 
 namespace cdem {
@@ -75,12 +77,25 @@ struct FlushFaces {
         if (!seam.ends_at(k)) continue;
         const Index next = face_beyond(faces, seam.face, k);
         if (next < 0) continue;
-        const Vec3<Real> to = faces.shape(next).center() - point;
-        const Vec3<Real> out = to - (dot(to, along) / dot(along, along)) * along;
-        if (dot(faces.shape(own).normal(), unit(out)) > rules.cone) return true;
+        if (dot(faces.shape(own).normal(), away(faces, next, point, along)) > rules.cone)
+          return true;
       }
       return false;
     });
+  }
+
+  /// The direction in which a face leads away from a point on an edge of it.
+  CDEM_HD static Vec3<Real> away(const FaceColumns& faces, Index face, const Vec3<Real>& point,
+                                 const Vec3<Real>& along) {
+    const Vec3<Real> to = faces.shape(face).center() - point;
+    return unit(to - (dot(to, along) / dot(along, along)) * along);
+  }
+  /// The next of the faces of a block that meet at a node of theirs, and the side of this one
+  /// between both.
+  CDEM_HD Index next_around(const FaceColumns& faces, Index face, Index node, Index& side) const {
+    for (side = 0; side < 3 && faces.vertex(face, side) != node;) ++side;
+    const Index* at = edge_faces + 2 * std::size_t(faces.face_edges[4 * face + side]);
+    return at[at[0] == face];
   }
 
  private:
@@ -89,7 +104,7 @@ struct FlushFaces {
     Index face;
     const FaceShape<Real>& shape;
     Vec3<Real> normal, point;
-    Real room;  // within which lengths are the same  [m]
+    Real room;  // within which lengths are the same, no less than its width  [m]
 
     CDEM_HD Vec3<Real> side(Index k) const {
       return shape.x[k + 1 == shape.count() ? 0 : k + 1] - shape.x[k];
@@ -112,9 +127,10 @@ struct FlushFaces {
       if (faces.body[faces.vertex(u, 0)] == spared) continue;
       const FaceShape<Real> shape = faces.shape(u);
       const Real length = min_of(faces.face_length[f], faces.face_length[u]);
-      const Seam seam{u, shape, shape.normal(), point, rules.tolerance * length};
-      if (dot(n, seam.normal) < -coplanar_faces &&
-          abs_of(dot(seam.normal, point - shape.center())) < rules.indentation * length &&
+      const Vec3<Real> normal = shape.normal();
+      const Real apart = abs_of(dot(normal, point - shape.center()));
+      const Seam seam{u, shape, normal, point, max_of(rules.tolerance * length, apart)};
+      if (dot(n, normal) < -coplanar_faces && apart < rules.indentation * length &&
           shape.inside(point, seam.normal, seam.room) && test(seam))
         return true;
     }
@@ -139,8 +155,8 @@ struct FlushFaces {
   }
 };
 
-/// Sides of exposed faces, which are 4 * exposed face + side, in the seams of blocks that lie
-/// flush.
+/// Pairs of sides of exposed faces, which are 4 * exposed face + side, that must not begin to
+/// touch.
 struct HiddenEdges {
   FaceColumns faces;
   FaceGeometry geometry;
@@ -148,12 +164,9 @@ struct HiddenEdges {
   FlushFaces flush;
   const Index* exposed_face;
 
-  /// Is a contact of two sides inside the surface that one of their blocks makes with others that
-  /// lie flush?
+  /// Is a contact of two sides beyond a sharp rim, or inside the surface that one of their blocks
+  /// makes with others that lie flush?
   CDEM_HD bool hide(Index mother, Index target) const {
-    if (!flush.first ||
-        flush.meet(faces, rules, geometry.table[mother / 4], geometry.table[target / 4]))
-      return false;
     const Index side[2] = {mother, target};
     Vec3<Real> x[2], along[2];
     for (Index e = 0; e < 2; ++e) {
@@ -165,6 +178,12 @@ struct HiddenEdges {
         edge_normal(along[0], along[1], geometry.normal(target / 4) - geometry.normal(mother / 4));
     const Crossing<Real> at = cross_edges(x[0], along[0], x[1], along[1], n);
     const Vec3<Real> point[2] = {x[0] + at.s * along[0], x[1] + at.t * along[1]};
+    if (rides(mother, point[0], along[0], target, at.gap) ||
+        rides(target, point[1], along[1], mother, at.gap))
+      return true;
+    if (!flush.first ||
+        flush.meet(faces, rules, geometry.table[mother / 4], geometry.table[target / 4]))
+      return false;
     for (Index e = 0; e < 2; ++e) {
       const Index exposed = side[e] / 4, k = side[e] % 4;
       const Index other = geometry.table[side[1 - e] / 4].corner[0];
@@ -177,6 +196,29 @@ struct HiddenEdges {
           return true;
       }
     }
+    return false;
+  }
+
+ private:
+  /// Does an edge touch, at a point, a face beside the other one, or pass it? There it is less
+  /// deep, and no face of its own goes below.
+  CDEM_HD bool rides(Index side, const Vec3<Real>& point, const Vec3<Real>& along, Index other,
+                     Real gap) const {
+    const auto above = [&](Index face, const Vec3<Real>& n) {
+      return face < 0 || !(dot(n, FlushFaces::away(faces, face, point, along)) < -rules.cone);
+    };
+    const Index own[2] = {exposed_face[side / 4], faces.across(side / 4, side % 4)};
+    const Index across = faces.across(other / 4, other % 4);
+    const Index at_edge[2] = {other / 4, across < 0 ? -1 : faces.face_exposed[across]};
+    const Vec3<Real> one = geometry.normal(other / 4),
+                     two = normal_across(faces, geometry, other / 4, other % 4);
+    const auto touches = [&](const Vec3<Real>& center, const Vec3<Real>& n) {
+      return dot(n, point - center) > gap && !(dot(n, one) > coplanar_faces) &&
+             !(dot(n, two) > coplanar_faces) && above(own[0], n) && above(own[1], n);
+    };
+    for (const Index exposed : at_edge)
+      if (exposed >= 0 && BesideRim{faces, geometry, exposed_face}.any(exposed, touches))
+        return true;
     return false;
   }
 };
