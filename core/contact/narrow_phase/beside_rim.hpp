@@ -10,16 +10,15 @@ namespace cdem {
 struct BesideRim {
   FaceColumns faces;
   FaceGeometry geometry;
-  const Index* exposed_face;
 
   /// Does a test hold for a face that bends away beside an exposed face, or beside the flat surface
   /// of which that is a part? It is given the face's centre and normal.
   template <class Test>
   CDEM_HD bool any(Index exposed, const Test& test) const {
     if (any_at(exposed, exposed, test)) return true;
-    for (Index k = 0; k < faces.vertex_count(exposed_face[exposed]); ++k) {
-      const Index across = faces.across(exposed, k);
-      const Index part = across < 0 ? -1 : faces.face_exposed[across];
+    const ExposedRow& row = geometry.table[exposed];
+    for (Index k = 0; k < row.count(); ++k) {
+      const Index part = row.beside[k];
       if (part >= 0 && are_flat(geometry.normal(part), geometry.normal(exposed)) &&
           any_at(part, exposed, test))
         return true;
@@ -33,15 +32,18 @@ struct BesideRim {
   }
   template <class Test>
   CDEM_HD bool any_at(Index part, Index exposed, const Test& test) const {
-    const Vec3<Real> own = geometry.normal(exposed);
-    for (Index k = 0; k < faces.vertex_count(exposed_face[part]); ++k) {
-      const Index across = faces.across(part, k);
+    const Vec3<Real> own = geometry.normal(exposed), at = geometry.center(exposed);
+    const auto bends = [&](const Vec3<Real>& center, const Vec3<Real>& normal) {
+      return !are_flat(normal, own) && dot(own, center - at) < 0 && test(center, normal);
+    };
+    const ExposedRow& row = geometry.table[part];
+    for (Index k = 0; k < row.count(); ++k) {
+      const Index beside = row.beside[k];
+      if (beside >= 0 && bends(geometry.center(beside), geometry.normal(beside))) return true;
+      const Index across = beside < 0 ? faces.across(part, k) : -1;
       if (across < 0) continue;
-      const FaceShape<Real> beside = faces.shape(across);
-      const Vec3<Real> center = beside.center(), normal = beside.normal();
-      if (!are_flat(normal, own) && dot(own, center - geometry.center(exposed)) < 0 &&
-          test(center, normal))
-        return true;
+      const FaceShape<Real> shape = faces.shape(across);
+      if (bends(shape.center(), shape.normal())) return true;
     }
     return false;
   }

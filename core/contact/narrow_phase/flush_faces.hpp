@@ -17,6 +17,7 @@ struct FlushFaces {
   const Index* first;       // [face + 1]; null: no faces began flush
   const Index* mate;        // faces of other blocks, ascending in a row
   const Index* edge_faces;  // [edge][2] of one block, or -1
+  const Flag* at_node;      // has one of the faces at a node any?
 
   /// Have two exposed faces a corner where it began, at one place? Their blocks meet in the seams
   /// of others there, and neither hides the other.
@@ -178,8 +179,15 @@ struct HiddenEdges {
         edge_normal(along[0], along[1], geometry.normal(target / 4) - geometry.normal(mother / 4));
     const Crossing<Real> at = cross_edges(x[0], along[0], x[1], along[1], n);
     const Vec3<Real> point[2] = {x[0] + at.s * along[0], x[1] + at.t * along[1]};
-    if (rides(mother, point[0], along[0], target, at.gap) ||
-        rides(target, point[1], along[1], mother, at.gap))
+    // near an end of the other edge, where faces beside it may be less deep
+    const Real length = min_of(geometry.length(mother / 4), geometry.length(target / 4)),
+               near = rules.tolerance * length + abs_of(at.gap) / rules.cone;
+    const auto ends = [&](Real part, const Vec3<Real>& edge) {
+      const Real from_end = min_of(part, 1 - part);
+      return from_end < 0 || from_end * from_end * dot(edge, edge) < near * near;
+    };
+    if ((ends(at.t, along[1]) && rides(mother, point[0], along[0], target, at.gap)) ||
+        (ends(at.s, along[0]) && rides(target, point[1], along[1], mother, at.gap)))
       return true;
     if (!flush.first ||
         flush.meet(faces, rules, geometry.table[mother / 4], geometry.table[target / 4]))
@@ -217,8 +225,7 @@ struct HiddenEdges {
              !(dot(n, two) > coplanar_faces) && above(own[0], n) && above(own[1], n);
     };
     for (const Index exposed : at_edge)
-      if (exposed >= 0 && BesideRim{faces, geometry, exposed_face}.any(exposed, touches))
-        return true;
+      if (exposed >= 0 && BesideRim{faces, geometry}.any(exposed, touches)) return true;
     return false;
   }
 };

@@ -347,11 +347,10 @@ struct ResolveTargets : FaceSearch {
     const Vec3<Real> mother = geometry.normal(m);
     const Real opposed = dot(mother, geometry.normal(t)),
                room = rules.tolerance * smaller_length(m, t);
-    return BesideRim{faces, geometry, exposed_face}.any(
-        t, [&](const Vec3<Real>& center, const Vec3<Real>& n) {
-          const Real slack = dot(mother, n) < opposed ? room : 0.0;
-          return dot(n, s.v - center) > gap - slack && deepest(s.node, s.v, n);
-        });
+    return BesideRim{faces, geometry}.any(t, [&](const Vec3<Real>& center, const Vec3<Real>& n) {
+      const Real slack = dot(mother, n) < opposed ? room : 0.0;
+      return dot(n, s.v - center) > gap - slack && deepest(s.node, s.v, n);
+    });
   }
   /// Is a contact of a vertex of exposed face m with t inside the surface that one of their blocks
   /// makes with others that lie flush?
@@ -361,6 +360,7 @@ struct ResolveTargets : FaceSearch {
     const Index face = exposed_face[m], target = exposed_face[t];
     const Vec3<Real> n = geometry.normal(t);
     if (flush.cover(faces, rules, target, s.p - plane_gap(s.p, t) * n, s.node)) return true;
+    if (!flush.at_node[s.node]) return false;
     const Index spared = faces.vertex(target, 0);
     Index f = face;
     for (Index turn = 0; turn < most_around; ++turn) {

@@ -143,6 +143,9 @@ def _faces(t: Topology, p: Properties, out: Assembly) -> None:
     young = p.young_modulus[t.face_group]
     height = face_heights(t, np.concatenate(list(out.element_volume.values())), area)
     flush_first, flush = flush_rows(t, p.flush)
+    beside_flush = np.zeros(len(t.node_position), np.int8)
+    of_flush = t.face_nodes[np.diff(flush_first) > 0]
+    beside_flush[of_flush[of_flush >= 0]] = 1
     out.arrays |= {
         "face.nodes": t.face_nodes.ravel(),
         "face.edges": t.face_edges.ravel(),
@@ -158,6 +161,7 @@ def _faces(t: Topology, p: Properties, out: Assembly) -> None:
         "face.radius": _radius(t, p, out),
         "flush.first": flush_first,
         "flush.face": flush,
+        "node.flush": beside_flush,
         "edge.nodes": t.edge_nodes.ravel(),
         "edge.faces": t.edge_faces.ravel(),
         "edge_star.first": t.node_ring_first,
