@@ -39,8 +39,8 @@ FAULTS = [
         "slowing body",
         "a body that slows down under a steady force is said to slide",
         "src/cdem/run/behaviour.py",
-        "    if slower or now.least",
-        "    if now.least",
+        "    if stays or slower or now.least",
+        "    if stays or now.least",
         "tests/unit/study/test_verdict.py",
     ),
     Mutant(
@@ -74,5 +74,21 @@ FAULTS = [
         'update={"most_moved": None}',
         "update={}",
         "tests/validation/test_critical.py::test_a_stone_that_falls_before_the_search_is_no_travel",
+    ),
+    Mutant(
+        "wait beside a stone",
+        "trials wait for as long as a loose stone fell before them",
+        "src/cdem/study/critical.py",
+        "self.wait or patience(sim) or max(LEAST_STEPS, steps)",
+        "self.wait or max(LEAST_STEPS, steps)",
+        "tests/validation/test_critical.py::test_a_loose_stone_does_not_change_the_factor_of_the_rock",
+    ),
+    Mutant(
+        "fall of a stone",
+        "a trial takes the fall of a loose stone for a failure",
+        "src/cdem/study/verdict.py",
+        "self.counts_from[self.loose] =",
+        "_ =",
+        "tests/validation/test_critical.py::test_a_loose_stone_does_not_change_a_critical_value",
     ),
 ]

@@ -59,8 +59,9 @@ def behaviour(looks: Sequence[Look]) -> Literal["sliding", "creeping"] | None:
     """
     last = len(looks) - 1
     now, later, half = (looks[last - k * (last // 4)] for k in range(3))
+    stays = now.moved <= half.moved
     slower = now.moved - later.moved < later.moved - half.moved
-    if slower or now.least <= 0.5 * half.least:
+    if stays or slower or now.least <= 0.5 * half.least:
         return None
     return "sliding" if now.least > STEADY * half.least else "creeping"
 

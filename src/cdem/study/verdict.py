@@ -9,8 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cdem.errors import UnstableError
+from cdem.model.held import unheld_blocks
 from cdem.run import stages
 from cdem.run.behaviour import (
+    LONG,
     UNKNOWN,
     Look,
     behaviour,
@@ -88,6 +90,9 @@ def rests(
 ) -> Verdict:
     """Run a static stage that has begun until it rests or fails by the criterion.
 
+    Bodies that nothing holds at first may fall until they meet something: their motion counts after
+    `LONG` steps, or once a block has fallen past the edge of the model.
+
     Args:
         sim: The simulation.
         stage: Its stage.
@@ -99,7 +104,9 @@ def rests(
             failure is not sure.
     """
     c, chips = criterion, list[Body]()
-    watch = _Watch(sim, c, wait, start)
+    loose = unheld_blocks(sim.build, sim.out)[sim.build.topology.node_block]
+    hasty = hasty and not loose.any()
+    watch = _Watch(sim, c, wait, loose, start)
     most = sim.case.stages[sim.stage_index].max_steps or c.most_steps
     begin = sim.step_count
     while (done := sim.step_count - begin) < most:
@@ -119,7 +126,7 @@ def rests(
             continue
         _take_out(sim, verdict.bodies)
         chips += verdict.bodies
-        watch = _Watch(sim, c, wait, watch.begin)
+        watch = _Watch(sim, c, wait, loose, watch.begin)
     text = f"no rest in {done:,} steps, ratio {sim.core.unbalance_ratio():.2g}"
     return Verdict(False, "undecided", text, watch.moved(), watch.bodies(), chips)
 
@@ -138,18 +145,20 @@ class _Watch:
     sim: Simulation
     criterion: Criterion
     wait: int
+    loose: NDArray[np.bool_]  # nodes that may fall at first
     origin: Floats | None = None  # of reported displacements [m]
     looks: list[Look] = field(default_factory=lambda: [Look()])
 
     def __post_init__(self) -> None:
         self.size = face_size(self.sim)
         self.start = self.sim.fields["position"].copy()
+        self.counts_from, self.may_fall = self.start.copy(), False
         self.begin = self.start if self.origin is None else self.origin
         self.first_step = self.sim.step_count
 
     def bodies(self) -> list[Body]:
         """The bodies that have moved since the watch began."""
-        return moving_bodies(self.sim, self.start)
+        return moving_bodies(self.sim, self.counts_from)
 
     def moved(self) -> float:
         """Displacement of the farthest node from the origin [m]."""
@@ -170,23 +179,26 @@ class _Watch:
 
     def look(self) -> Verdict | None:
         """Check the present state; returns a verdict if it has failed."""
-        ways = ways_from(self.sim, self.start)
+        done = self.sim.step_count - self.first_step
+        self.may_fall = bool(self.loose.any()) and done <= LONG and not len(self.sim.fallen)
+        if self.may_fall:
+            self.counts_from[self.loose] = self.sim.fields["position"][self.loose]
+        ways = ways_from(self.sim, self.counts_from)
         moved = float(ways.max()) / self.size
         ratio = self.sim.core.unbalance_ratio()
         self.looks.append(Look(moved, min(self.looks[-1].least, ratio)))
         if moved > self.criterion.far:
             return Verdict(False, "sliding", self._text(ways), self.moved())
-        done = self.sim.step_count - self.first_step
         return self._goes_on(done, self._text(ways)) if done >= self.wait else None
 
     def _goes_on(self, done: int, text: str) -> Verdict | None:
         """Failed if it slides or creeps, see `behaviour`.
 
-        If it creeps, this must be so after four times the wait and `UNKNOWN` steps; if it has not
-        moved by `travel`, it is sure only then.
+        If it creeps, this must be so after four times the wait and `UNKNOWN` steps, or those of a
+        fall; if it has not moved by `travel`, it is sure only then.
         """
         saw, now = behaviour(self.looks), self.looks[-1]
-        early = done < max(UNKNOWN, 4 * self.wait)
+        early = done < max(UNKNOWN, 4 * self.wait) or self.may_fall
         if saw is None or (saw == "creeping" and early):
             return None
         may_tighten = now.moved <= self.criterion.travel  # an anchor, or a joint that closes again
@@ -194,4 +206,5 @@ class _Watch:
         return Verdict(False, saw, why, self.moved(), sure=not (early and may_tighten))
 
     def _text(self, ways: Floats) -> str:
-        return f"{place_of(self.sim, ways)}, {speed_of(self.sim):.2g} m/s"
+        past = ", past the edge of the model" if len(self.sim.fallen) else ""
+        return f"{place_of(self.sim, ways)}, {speed_of(self.sim):.2g} m/s{past}"

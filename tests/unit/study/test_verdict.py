@@ -4,12 +4,12 @@ from types import SimpleNamespace
 
 import numpy as np
 
-from cdem.run.behaviour import LEAST_STEPS, UNKNOWN
+from cdem.run.behaviour import LEAST_STEPS, LONG, UNKNOWN
 from cdem.study.criterion import Criterion
 from cdem.study.verdict import LOOK, _Watch
 
 
-def watch_of(looks, wait=LEAST_STEPS):
+def watch_of(looks, wait=LEAST_STEPS, loose=False):
     """Verdicts on a block of faces of 1 m, at each look with a way [m] and an unbalance ratio.
 
     None before there is one; with a question mark where it is not sure.
@@ -24,9 +24,10 @@ def watch_of(looks, wait=LEAST_STEPS):
         core=SimpleNamespace(unbalance_ratio=lambda: ratio[0]),
         fields={"position": np.zeros((1, 3)), "velocity": np.zeros((1, 3))},
         out=np.zeros(1, bool),
+        fallen=np.zeros(0, int),
         step_count=0,
     )
-    watch = _Watch(sim, Criterion(), wait)
+    watch = _Watch(sim, Criterion(), wait, np.array([loose]))
     for number, (way, left) in enumerate(looks, 1):
         ratio[0] = left
         sim.fields["position"] = np.array([[way, 0.0, 0.0]])
@@ -74,3 +75,17 @@ def test_a_force_that_falls_too_slowly_creeps_in_the_end():
 
 def test_a_body_that_moves_by_a_face_slides_at_any_speed():
     assert list(watch_of([(0.9, 0.1), (1.1, 1e-4)])) == [None, "sliding"]
+
+
+def test_a_body_that_nothing_holds_may_fall_until_it_meets_something():
+    """Beyond a face, and past the steps after which others creep; but not for ever."""
+    fall = steps(LONG // LOOK + 20, lambda k: 1e-3 * k**2, lambda k: 0.1)
+    seen = list(watch_of(fall, loose=True))
+    assert not any(seen[: LONG // LOOK]) and seen[-1] == "sliding"
+    assert "sliding" in list(watch_of(fall))[:10]
+
+
+def test_a_body_that_has_fallen_and_lies_still_does_not_creep():
+    """It lies after half of the steps, but the ratio has not fallen yet."""
+    lies = steps(LONG // LOOK, lambda k: min(k, 200), lambda k: 0.1)
+    assert not any(watch_of(lies, loose=True))
