@@ -91,4 +91,20 @@ FAULTS = [
         "_ =",
         "tests/validation/test_critical.py::test_a_loose_stone_does_not_change_a_critical_value",
     ),
+    Mutant(
+        "energy of a trial",
+        "a trial that loses the balance of energy goes on as if nothing were",
+        "src/cdem/study/verdict.py",
+        "handed_over = sim.watch_energy(stage)",
+        'handed_over = ""',
+        "tests/integration/test_handed_over.py",
+    ),
+    Mutant(
+        "damping of a hand-over",
+        "trials after a search that began by local damping keep that damping",
+        "src/cdem/study/critical.py",
+        "            sim.core.set_damping(*stages.damping_of(sim.case.stages[-1]))  # not that of a hand-over\n",
+        "",
+        "tests/integration/test_handed_over.py",
+    ),
 ]

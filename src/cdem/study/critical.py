@@ -391,14 +391,15 @@ class _Warm:
             )
         steps = sim.step_count - before
         self.wait = self.wait or patience(sim) or max(LEAST_STEPS, steps)
-        self.tell(self._before_the_search(verdict, steps))
+        self.tell(self._before_the_search(stage, verdict, steps))
         return stage
 
-    def _before_the_search(self, verdict: Verdict, steps: int) -> list[str]:
-        """Warnings of what has moved far before the trials."""
+    def _before_the_search(self, stage: StageState, verdict: Verdict, steps: int) -> list[str]:
+        """Warnings of what has moved far before the trials, or was handed over."""
         when = f"before the search, with strengths {1 / HELD:g} times as high"
         told = [f"{when}, a chip was taken out: {chip.text()}" for chip in verdict.chips]
-        if verdict.moved > 0.5 * self.criterion.travel * face_size(self.sim):
+        slip = 0.5 * self.criterion.travel * face_size(self.sim)
+        if verdict.moved > slip or stage.handed_over:
             told.append(f"{when}: at rest after {steps:,} steps, {verdict.why}")
         return told
 
@@ -431,7 +432,8 @@ class _Warm:
         before = sim.step_count
         if self.held:
             self._give(value)
-            stage = replace(self.held, start_step=before, solved="")
+            sim.core.set_damping(*stages.damping_of(sim.case.stages[-1]))  # not that of a hand-over
+            stage = replace(self.held, start_step=before, solved="", handed_over=False)
         else:
             stage = self._begin(value)
             self.wait = self.wait or patience(sim)

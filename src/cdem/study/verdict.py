@@ -103,6 +103,22 @@ def rests(
         hasty: Whether to end where a body slides that has not moved by `travel` yet: such a
             failure is not sure.
     """
+    notes: list[str] = []
+    verdict = _watched(sim, stage, criterion, wait, start, hasty, notes)
+    verdict.why = "; ".join([verdict.why, *notes])
+    return verdict
+
+
+def _watched(
+    sim: Simulation,
+    stage: StageState,
+    criterion: Criterion,
+    wait: int,
+    start: Floats | None,
+    hasty: bool,
+    notes: list[str],
+) -> Verdict:
+    """The verdict on a stage; what else is to be told goes to the notes."""
     c, chips = criterion, list[Body]()
     loose = unheld_blocks(sim.build, sim.out)[sim.build.topology.node_block]
     hasty = hasty and not loose.any()
@@ -112,8 +128,13 @@ def rests(
     while (done := sim.step_count - begin) < most:
         try:
             outcome = sim.advance(stage, min(LOOK, most - done))
+            handed_over = sim.watch_energy(stage)
         except UnstableError as error:
             return Verdict(False, "unstable", str(error), watch.moved(), chips=chips)
+        if handed_over:  # the steps of local damping are others
+            notes.append(handed_over)
+            watch = _Watch(sim, c, max(wait, UNKNOWN), loose, watch.begin)
+            continue
         if outcome == "converged":
             return watch.rest(chips)
         verdict = watch.look()
