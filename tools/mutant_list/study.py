@@ -55,7 +55,7 @@ FAULTS = [
         "stones settle",
         "stones that settle slowly are said to move",
         "src/cdem/run/behaviour.py",
-        "half[-1] - half[0] > FAR",
+        "half[-1] - half[0] > STILL_MOVES",
         "half[-1] - half[0] > 0",
         "tests/unit/run/test_behaviour.py",
     ),
