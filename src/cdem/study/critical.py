@@ -397,7 +397,10 @@ class _Warm:
     def _before_the_search(self, stage: StageState, verdict: Verdict, steps: int) -> list[str]:
         """Warnings of what has moved far before the trials, or was handed over."""
         when = f"before the search, with strengths {1 / HELD:g} times as high"
-        told = [f"{when}, a chip was taken out: {chip.text()}" for chip in verdict.chips]
+        told = []
+        if chips := verdict.chips:
+            more = f", and {len(chips) - 1} smaller ones" if len(chips) > 1 else ""
+            told.append(f"{when}, a chip was taken out: {chips[0].text()}{more}")
         slip = 0.5 * self.criterion.travel * face_size(self.sim)
         if verdict.moved > slip or stage.handed_over:
             told.append(f"{when}: at rest after {steps:,} steps, {verdict.why}")
