@@ -87,8 +87,8 @@ FAULTS = [
         "fall of a stone",
         "a trial takes the fall of a loose stone for a failure",
         "src/cdem/study/verdict.py",
-        "self.counts_from[self.loose] =",
-        "_ =",
+        "self.counts_from[self.falls] = now[self.falls]",
+        "pass",
         "tests/validation/test_critical.py::test_a_loose_stone_does_not_change_a_critical_value",
     ),
     Mutant(

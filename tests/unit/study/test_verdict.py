@@ -3,8 +3,10 @@
 from types import SimpleNamespace
 
 import numpy as np
+import pytest
 
 from cdem.run.behaviour import LEAST_STEPS, LONG, UNKNOWN
+from cdem.study import verdict
 from cdem.study.criterion import Criterion
 from cdem.study.verdict import LOOK, _Watch
 
@@ -32,8 +34,8 @@ def watch_of(looks, wait=LEAST_STEPS, loose=False):
         ratio[0] = left
         sim.fields["position"] = np.array([[way, 0.0, 0.0]])
         sim.step_count = number * LOOK
-        verdict = watch.look()
-        yield verdict and verdict.saw + "?" * (not verdict.sure)
+        seen = watch.look()
+        yield seen and seen.saw + "?" * (not seen.sure)
 
 
 def steps(count, way, ratio):
@@ -77,15 +79,43 @@ def test_a_body_that_moves_by_a_face_slides_at_any_speed():
     assert list(watch_of([(0.9, 0.1), (1.1, 1e-4)])) == [None, "sliding"]
 
 
-def test_a_body_that_nothing_holds_may_fall_until_it_meets_something():
+@pytest.fixture
+def lands(monkeypatch):
+    """Let the body land at the look of a number: nothing holds it before."""
+
+    def at(number):
+        looks = iter(range(1, 10_000))
+        monkeypatch.setattr(
+            verdict, "loose_nodes", lambda sim: np.array([next(looks) < number], bool)
+        )
+
+    return at
+
+
+def test_a_body_that_nothing_holds_may_fall(lands):
     """Beyond a face, and past the steps after which others creep; but not for ever."""
+    lands(10_000)
     fall = steps(LONG // LOOK + 20, lambda k: 1e-3 * k**2, lambda k: 0.1)
     seen = list(watch_of(fall, loose=True))
     assert not any(seen[: LONG // LOOK]) and seen[-1] == "sliding"
     assert "sliding" in list(watch_of(fall))[:10]
 
 
-def test_a_body_that_has_fallen_and_lies_still_does_not_creep():
-    """It lies after half of the steps, but the ratio has not fallen yet."""
-    lies = steps(LONG // LOOK, lambda k: min(k, 200), lambda k: 0.1)
-    assert not any(watch_of(lies, loose=True))
+@pytest.mark.parametrize("bounces", [0.0, 0.3])
+def test_a_body_that_has_landed_settles(lands, bounces):
+    """It lies still from there on, though the ratio has not fallen yet, or jumps up once more."""
+    lands(50)
+    after = UNKNOWN // LOOK
+
+    def way(k):
+        return min(k, 50) + bounces * (k > 70)
+
+    assert not any(watch_of(steps(50 + after, way, lambda k: 0.1), loose=True))
+
+
+def test_a_body_that_lands_and_goes_on_by_a_face_slides(lands):
+    """A wall whose blocks begin apart, and which falls down."""
+    lands(3)
+    fall = steps(100, lambda k: 1e-3 * k**2, lambda k: 0.1)
+    seen = list(watch_of(fall, loose=True))
+    assert not any(seen[:31]) and seen[31] == "sliding"
