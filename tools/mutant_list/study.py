@@ -89,7 +89,7 @@ FAULTS = [
         "src/cdem/study/verdict.py",
         "self.counts_from[self.falls] = now[self.falls]",
         "pass",
-        "tests/validation/test_critical.py::test_a_loose_stone_does_not_change_a_critical_value",
+        "tests/unit/study/test_verdict.py",
     ),
     Mutant(
         "energy of a trial",
