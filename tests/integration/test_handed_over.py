@@ -10,6 +10,8 @@ import cdem
 from cdem.errors import UnstableError
 from cdem.run.stage_state import StageState
 from cdem.run.state import Attributes
+from cdem.study.critical import find_critical, find_factor, parameter
+from cdem.study.verdict import stage_rests
 from cdem.verification.dry_wall.problem import wall
 
 BED = {"group": "bed", "box": {"size": [4, 4, 0.5], "divisions": [8, 4, 1]},
@@ -160,6 +162,39 @@ def test_handed_over_stage_is_judged_like_any_other():
     assert sim.run() == "finished"
     assert "handed_over" not in sim.finished_stages[0]
     assert sim.energies["error"] < -0.05
+
+
+def test_a_trial_that_loses_the_balance_goes_on_by_local_damping():
+    """In the words of a run; the next trial begins by adaptive relaxation again.
+
+    The cube slides where gravity along its bed is tan 35 of that across it.
+    """
+    tilt = parameter("loads.gravity.0")
+    found = find_critical(dropped(REST), tilt, (0.5, 9), tolerance=0.5, threads=1)
+    assert found.stable <= 9.81 * np.tan(np.radians(35)) <= found.failed + 0.01
+    first, *others = found.trials
+    assert "of adaptive relaxation the energy balance is off by -5." in first.why
+    assert "so the stage goes on from there by relax: local" in first.why
+    assert not any("relax: local" in trial.why for trial in others)
+
+
+def test_a_search_tells_that_it_began_by_local_damping():
+    told = []
+    made = dropped(REST, time={"energy_error": 0.01})
+    made.set("loads.gravity", [1.0, 0, -9.81])
+    found = find_factor(made, tolerance=0.2, threads=1, tell=told.extend).kept
+    assert found.value == pytest.approx(9.81 * np.tan(np.radians(35)), rel=0.02)
+    (line,) = told
+    assert line.startswith("before the search") and "relax: local" in line
+    assert not any("relax: local" in trial.why for trial in found.trials)
+    assert max(trial.steps for trial in found.trials if trial.stable) <= 200  # local: 860
+
+
+@pytest.mark.parametrize("way", ["kinetic", "local"])
+def test_a_trial_by_another_way_fails_where_the_balance_is_off(way):
+    made = dropped(REST | {"relax": way}, time={"energy_error": 1e-9})
+    found = stage_rests(cdem.Simulation(made, threads=1))
+    assert found.saw == "unstable" and "energy balance is off" in found.why
 
 
 def test_stage_out_of_steps_is_not_handed_over():

@@ -16,6 +16,7 @@ from cdem.run import stages
 from cdem.run.behaviour import patience
 from cdem.study.criterion import Criterion
 from cdem.study.critical import find_critical, find_factor, parameter, strength_reduction
+from cdem.study.strengths import keep_strengths
 
 SLOPE = 30.0  # [deg]
 
@@ -348,10 +349,12 @@ def test_a_trial_waits_for_two_periods_of_a_column():
 
 
 def test_nothing_holds_a_block_that_falls():
+    """It is told once it has fallen past the edge of the model."""
     lone = block_on_a_slope()
     lone.set("model.blocks.0.translate", [9, 1, 0])
     lone.set("stages", [{"name": "fall", "mode": "static"}])
-    with pytest.raises(CaseError, match="does not rest even with strengths 100 times as high"):
+    said = "does not rest even with strengths 100 times as high .* past the edge of the model"
+    with pytest.raises(CaseError, match=said):
         find_factor(lone, threads=1)
 
 
@@ -456,3 +459,88 @@ def test_a_stone_that_falls_before_the_search_is_no_travel():
     theory = math.tan(math.radians(20)) / math.tan(t)
     assert found.value == pytest.approx(theory, rel=0.01)
     assert found.slip == 0
+
+
+def quarry_bench(*stones):
+    """A bench with a fault and cracks, on which a wedge of three blocks slides; stones above a floor."""
+    foot = [[0, 0, 0], [26, 0, 0], [20, 0, 22], [0, 0, 22]]
+    rock = [*foot, *([x, 8, z] for x, _, z in foot)]
+    blocks = [
+        {"group": "rock", "polyhedron": {"vertices": rock}},
+        {"group": "floor", "box": {"size": [8, 8, 2]}, "translate": [26, 0, -2]},
+    ]
+    blocks += [
+        {"group": "stone", "box": {"size": 3 * [1.2]}, "translate": [28, 3 + 2 * k, gap]}
+        for k, gap in enumerate(stones)
+    ]
+    soft = {"stiffness_n": "8 GPa/m", "stiffness_s": "3 GPa/m"}
+    fault = {"friction_angle": 28, "cohesion": "55 kPa"} | soft
+    joints = [
+        {"name": "fault", "dip": 42, "dip_direction": 90, "origin": [25.2, 4, 3]},
+        {"name": "cracks", "dip": 85, "dip_direction": 270, "origin": [11, 4, 22], "spacing": 6},
+    ]
+    return case(
+        blocks,
+        {"rock": {}, "floor": {"fix": ["x", "y", "z"]}} | ({"stone": {}} if stones else {}),
+        model={"joints": joints},
+        defaults=True,
+        rock={"density": 2700, "young_modulus": 3e10, "poisson_ratio": 0.22},
+        interfaces={
+            "default": {"friction_angle": 35},
+            "pairs": [
+                {"name": "fault", "joint": "fault"} | fault,
+                {"name": "cracks", "joint": "cracks", "friction_angle": 38} | soft,
+            ],
+        },
+        loads={
+            "gravity": [0, 0, -9.81],
+            "supports": [
+                {"surface": {"group": "rock", "normal": normal}, "fix": axes}
+                for normal, axes in (
+                    ([0, 0, -1], ["x", "y", "z"]),
+                    ([-1, 0, 0], ["x"]),
+                    ([0, -1, 0], ["y"]),
+                    ([0, 1, 0], ["y"]),
+                )
+            ],
+        },
+        stages=[{"name": "rest", "mode": "static"}],
+    )
+
+
+def test_a_loose_stone_does_not_change_the_factor_of_the_rock():
+    """A trial waits for the rock, not for the fall of the stone: the rock slid and caught on edges."""
+    told = []
+    alone, beside = (
+        find_critical(
+            keep_strengths(quarry_bench(*stones))[0],
+            strength_reduction(keep=True),
+            None,
+            tolerance=0.01,
+            threads=1,
+            tell=told.extend,
+        )
+        for stones in ((), (0.4, 0.1))
+    )
+    assert alone.value == pytest.approx(1.0586, abs=0.01)
+    assert (beside.stable, beside.failed) == (alone.stable, alone.failed)
+    assert sum(t.steps for t in beside.trials) < 1.5 * sum(t.steps for t in alone.trials)
+    (line,) = [text for text in told if "before the search" in text]
+    assert "at rest after" in line and "stone has moved 0.4 m" in line
+
+
+def test_a_loose_stone_does_not_change_a_critical_value():
+    """It may fall in the first trial, also beside rock that slides there."""
+    strong, weak = 900e3, 5e3
+    alone, beside = (
+        find_critical(
+            quarry_bench(*stones),
+            parameter("interfaces.pairs.0.cohesion"),
+            (weak, strong),
+            tolerance=5e3,
+            threads=1,
+        )
+        for stones in ((), (0.4, 0.1))
+    )
+    assert (beside.stable, beside.failed) == (alone.stable, alone.failed)
+    assert beside.trials[0].bodies[0].groups == ["rock"] and not beside.trials[0].stable

@@ -63,6 +63,11 @@ class Parameter:
         """Whether the case must give it, in a pair or in the default."""
         return self.default is None and self.like is None
 
+    def text(self, value: float) -> str:
+        """A value with symbol and unit; the angle of friction speaks for itself."""
+        symbol = "" if self.name == "friction_angle" else f"{self.symbol} "
+        return f"{symbol}{value:g}" + ("" if self.unit == "1" else f" {self.unit}")
+
     def field(self, required: bool) -> tuple[Any, Any]:
         """Type and field of a pydantic model; not required: an omitted value is None."""
         if self.choices:
@@ -154,7 +159,7 @@ class Law:
         ]
         if not strengths:  # a factor of safety acts on their result
             strengths = [p for p in self.parameters if p.default is None and p.like is None]
-        text = ", ".join(f"{getattr(part, p.name):g} {p.unit}" for p in strengths if not p.bonds)
+        text = ", ".join(p.text(getattr(part, p.name)) for p in strengths if not p.bonds)
         if self.bonds(part):
             bonds = [p for p in strengths if p.bonds]
             values = " ".join(f"{p.symbol} {getattr(part, p.name):.3g}" for p in bonds)

@@ -19,6 +19,7 @@ from cdem.model.build import Build
 from cdem.model.compliance import bonded_interfaces, coarse_beams
 from cdem.model.contact_overlaps import contact_interfaces
 from cdem.model.disc_areas import disc_areas, disc_lines, weak_bridges
+from cdem.model.held import unheld_blocks
 from cdem.model.meshed_strength import meshed_strengths, strength_text
 from cdem.model.model_warnings import crowded_edges, idle_bonds, uneven_tiles, unlike_sides
 from cdem.model.options import pairs_loose_joints
@@ -162,28 +163,9 @@ class Audit:
 
     def _unheld_blocks(self) -> dict[str, int]:
         """Blocks of each group that no support, bond or contact holds at the start."""
-        b = self._build
-        t, a = b.topology, b.assembly
-        core = self._build.core.fields()
-        exposed = core["search.exposed_face"]
-        sources = core["outer.acting_first"]
-        pairs = [
-            np.empty((0, 2), int),
-            *a.pair_faces.values(),
-            exposed[_pairs_of(sources, core["outer.faces_acting_on"])],
-        ]
-        by_modules = [module.joined_blocks() for module in b.modules.values()]
-        joined = np.concatenate([t.face_block[np.concatenate(pairs)], *by_modules])
+        b, t = self._build, self._build.topology
         out = np.isin(t.block_group, [b.group_names.index(name) for name in b.case.absent(0)])
-        joined = joined[~out[joined].any(axis=1)]
-        held = out.copy()  # groups added later need no support yet
-        held[t.node_block[b.arrays["support.row"][: len(t.node_block)] >= 0]] = True
-        while True:  # one round per block in a chain of supports
-            reached = held[joined].any(axis=1) & ~held[joined].all(axis=1)
-            if not reached.any():
-                break
-            held[joined[reached]] = True
-        names = [self._build.group_names[g] for g in t.block_group[~held]]
+        names = [b.group_names[g] for g in t.block_group[unheld_blocks(b, out)]]
         return {name: names.count(name) for name in dict.fromkeys(names)}
 
     def _soft_interfaces(self) -> Iterator[str]:
@@ -435,8 +417,3 @@ def _place(row: dict[str, Any]) -> str:
     """Groups, and joint set if any, of a row of interfaces."""
     joint = f", joint {row['joint']}" if row["joint"] else ""
     return " - ".join(row["between"]) + joint
-
-
-def _pairs_of(first: NDArray, other: NDArray) -> NDArray:
-    """Row and entry of every entry of ragged rows, shape (entries, 2)."""
-    return np.column_stack([np.repeat(np.arange(len(first) - 1), np.diff(first)), other])

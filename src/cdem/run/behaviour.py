@@ -32,7 +32,7 @@ STEADY = 0.9
 number of steps doubles: a remaining force would keep accelerating it."""
 LONG = 4 * UNKNOWN
 """Steps after which a stage of a run ends that slides or creeps; loose stones settle for longer."""
-FAR = 0.02
+STILL_MOVES = 0.02
 """Part of the mean face size by which the farthest node must then have moved in the last half."""
 STAYS = 0.005
 """Part of the mean face size by which blocks that chatter move at most in that half."""
@@ -59,8 +59,9 @@ def behaviour(looks: Sequence[Look]) -> Literal["sliding", "creeping"] | None:
     """
     last = len(looks) - 1
     now, later, half = (looks[last - k * (last // 4)] for k in range(3))
+    stays = now.moved <= half.moved
     slower = now.moved - later.moved < later.moved - half.moved
-    if slower or now.least <= 0.5 * half.least:
+    if stays or slower or now.least <= 0.5 * half.least:
         return None
     return "sliding" if now.least > STEADY * half.least else "creeping"
 
@@ -153,7 +154,7 @@ def look(sim: RunState, stage: StageState, outcome: str) -> NoRest | None:
     """Look at a stage of a run at a row of its history.
 
     A body moves if it slides or creeps after `UNKNOWN` steps and by more than the mean face size. It
-    moves if it slides, or creeps, after `LONG` steps if it is still moving by `FAR`. Where the
+    moves if it slides, or creeps, after `LONG` steps if it is still moving by `STILL_MOVES`. Where the
     unbalance has not halved in the last half of four times as many, blocks chatter, or the end is
     undecided. Unless a block has fallen past the edge, all of this must be true after the wait of
     `patience` as well, or four times that where nothing has moved by a face.
@@ -204,7 +205,7 @@ def _status(
     saw = behaviour(looks) if goes else None
     if saw and half[-1] > 1:
         return "moving"
-    if saw and done >= LONG and half[-1] - half[0] > FAR:
+    if saw and done >= LONG and half[-1] - half[0] > STILL_MOVES:
         return "moving" if saw == "sliding" else "creeping"
     if done < 4 * LONG or looks[-1].least <= 0.5 * looks[len(looks) // 2].least:
         return None

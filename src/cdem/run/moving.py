@@ -108,6 +108,15 @@ def moving_bodies(sim: RunState, start: Floats) -> list[Body]:
     return sorted(found, key=lambda body: -body.volume)
 
 
+def volume_of(sim: RunState, blocks: NDArray[np.int32]) -> float:
+    """Volume of blocks [m3]."""
+    b, t = sim.build, sim.build.topology
+    return sum(
+        float(b.assembly.element_volume[shape][np.isin(t.element_block[shape], blocks)].sum())
+        for shape in t.element_nodes
+    )
+
+
 def _touching(sim: RunState) -> NDArray[np.int32]:
     """Pairs of faces that touched at the start, or touch now, shape (pairs, 2)."""
     t, now = sim.build.topology, sim.contacts

@@ -395,13 +395,31 @@ class Simulation(RunState):
     def _check(self, stage: StageState) -> bool:
         """End a run whose results are no longer trustworthy; or hand the stage over, and say so."""
         stages.refuse_curves_over(self)
-        of_energy = failures.of_energy(self)
-        if of_energy and stages.may_hand_over(self, stage):
-            self._guard(partial(stages.relax_locally, self, stage))
+        if self.watch_energy(stage):
             return True
-        if why := of_energy or failures.of_strain(self):
+        if why := failures.of_strain(self):
             raise self._failed(why)
         return False
+
+    def watch_energy(self, stage: StageState) -> str:
+        """Hand a stage over to local damping where its energy balance does not close.
+
+        Returns:
+            What was said of it in the log, or nothing.
+
+        Raises:
+            UnstableError: The balance does not close, and the stage cannot be handed over.
+        """
+        if self.core.scalars()["step"] > 0:
+            self.core.keep_energy_scale()
+        if not (why := failures.of_energy(self)):
+            return ""
+        if not stages.may_hand_over(self, stage):
+            raise self._failed(why)
+        said = stages.balance_lost(self, stage)
+        self.tell(f"{stage.name}: {said}")
+        self._guard(partial(stages.relax_locally, self, stage))
+        return said
 
     def _look_at_weakening(self) -> None:
         """Warn once of an interface whose friction falls too fast for the step."""

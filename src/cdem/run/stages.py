@@ -278,16 +278,20 @@ def may_hand_over(sim: RunState, stage: StageState) -> bool:
     return rules.relax is not None and RELAXATIONS[rules.relax] == "adaptive"
 
 
+def balance_lost(sim: RunState, stage: StageState) -> str:
+    """Why a stage is handed over to local damping."""
+    return (
+        f"after {sim.step_count - stage.start_step:,} steps of adaptive relaxation the energy balance "
+        f"is off by {100 * sim.energies['error']:.3g} %, so the stage goes on from there by relax: "
+        "local"
+    )
+
+
 def relax_locally(sim: RunState, stage: StageState) -> tuple[str, int, float]:
     """Let local damping go on, from the present positions without motion; returns the core's report.
 
     The missing energy is booked as damping, so the balance of all that follows starts anew.
     """
-    sim.tell(
-        f"{stage.name}: after {sim.step_count - stage.start_step:,} steps of adaptive relaxation the "
-        f"energy balance is off by {100 * sim.energies['error']:.3g} %, so the stage goes on from there "
-        "by relax: local"
-    )
     stage.handed_over = True
     stage.watch_anew()
     sim.core.leave_adaptive()

@@ -11,6 +11,7 @@ from cdem.case.explain import explain
 from cdem.case.source import Source
 from cdem.case.types import Name, Part, Quantity
 from cdem.errors import CaseError
+from cdem.run.moving import volume_of
 
 if TYPE_CHECKING:
     from cdem.run.moving import Body
@@ -95,9 +96,11 @@ class Criterion(Part):
 
     def counts(self, sim: Simulation, body: Body) -> bool:
         """Whether a body that moves is a failure; others are taken out of the model."""
+        of_blocks = body.volume if body.whole else volume_of(sim, body.members)
+        counts = of_blocks >= self.least_volume(sim)
         if self.group is not None and self.group not in body.groups:
-            return not body.whole
-        return not body.whole or body.volume >= self.least_volume(sim)
+            return counts and not body.whole
+        return counts
 
     def least_volume(self, sim: Simulation) -> float:
         """Volume from which on a body counts [m3]."""

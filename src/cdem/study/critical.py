@@ -354,7 +354,7 @@ class _Warm:
         threads: int | None,
         tell: Tell,
     ) -> None:
-        self.apply, self.criterion = apply, criterion
+        self.apply, self.criterion, self.tell = apply, criterion, tell
         self.sim = Simulation(case, threads=threads)
         criterion.check(self.sim)
         tell(self.sim.audit.warnings)
@@ -366,10 +366,12 @@ class _Warm:
             self.held = self._hold()
         self.start = self.at_rest = keep(self.sim)
         self.from_where = self.sim.fields["position"].copy()
-        self.bisecting = False
+        self.bisecting, self.wait_at_rest = False, self.wait
 
     def _hold(self) -> StageState:
         """Begin the last stage with strengths that hold everything, and find its rest.
+
+        The period of trials is that of the rest: what is loose has fallen by then.
 
         Raises:
             CaseError: It does not rest: something falls or topples whatever the strengths.
@@ -379,17 +381,30 @@ class _Warm:
         self._give(HELD)
         before = sim.step_count
         stages.solve(sim, stage)
-        known = self.wait or patience(sim)
         held = self.criterion.model_copy(update={"most_moved": None})  # it counts from now on
-        verdict = rests(sim, stage, held, known or UNKNOWN)
+        verdict = rests(sim, stage, held, self.wait or UNKNOWN)
         if not verdict.stable:
             bodies = "".join(f"; {body.text()}" for body in verdict.bodies[:1])
             raise CaseError(
                 f"the model does not rest even with strengths {1 / HELD:g} times as high "
                 f"({verdict.saw}: {verdict.why}{bodies}): no factor of strengths holds it"
             )
-        self.wait = known or max(LEAST_STEPS, sim.step_count - before)
+        steps = sim.step_count - before
+        self.wait = self.wait or patience(sim) or max(LEAST_STEPS, steps)
+        self.tell(self._before_the_search(stage, verdict, steps))
         return stage
+
+    def _before_the_search(self, stage: StageState, verdict: Verdict, steps: int) -> list[str]:
+        """Warnings of what has moved far before the trials, or was handed over."""
+        when = f"before the search, with strengths {1 / HELD:g} times as high"
+        told = []
+        if chips := verdict.chips:
+            more = f", and {len(chips) - 1} smaller ones" if len(chips) > 1 else ""
+            told.append(f"{when}, a chip was taken out: {chips[0].text()}{more}")
+        slip = 0.5 * self.criterion.travel * face_size(self.sim)
+        if verdict.moved > slip or stage.handed_over:
+            told.append(f"{when}: at rest after {steps:,} steps, {verdict.why}")
+        return told
 
     def _begin(self, value: float) -> StageState:
         """Begin the last stage with a value of the search."""
@@ -407,6 +422,7 @@ class _Warm:
     def begin_bisection(self) -> None:
         """Let further trials start from rest instead of the prepared state."""
         self.bisecting = True
+        self.wait = self.wait_at_rest
 
     def broken_at_rest(self) -> dict[str, float]:
         """Broken part of the bonded area of each interface, after the last trial that came to rest."""
@@ -419,14 +435,16 @@ class _Warm:
         before = sim.step_count
         if self.held:
             self._give(value)
-            stage = replace(self.held, start_step=before, solved="")
+            sim.core.set_damping(*stages.damping_of(sim.case.stages[-1]))  # not that of a hand-over
+            stage = replace(self.held, start_step=before, solved="", handed_over=False)
         else:
             stage = self._begin(value)
-            self.wait = self.wait or patience(sim) or UNKNOWN
-        assert self.wait
-        verdict = rests(sim, stage, self.criterion, self.wait, self.from_where, hasty=hasty)
+            self.wait = self.wait or patience(sim)
+        wait = self.wait or UNKNOWN
+        verdict = rests(sim, stage, self.criterion, wait, self.from_where, hasty=hasty)
         if verdict.stable:
             self.at_rest = keep(sim)
+            self.wait_at_rest = self.wait or patience(sim)  # what was loose has fallen
         return _trial(value, verdict, sim.step_count - before)
 
 

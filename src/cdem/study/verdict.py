@@ -9,8 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cdem.errors import UnstableError
+from cdem.model.held import unheld_blocks
 from cdem.run import stages
 from cdem.run.behaviour import (
+    LONG,
     UNKNOWN,
     Look,
     behaviour,
@@ -88,6 +90,10 @@ def rests(
 ) -> Verdict:
     """Run a static stage that has begun until it rests or fails by the criterion.
 
+    Bodies that nothing holds at first may fall until they meet something, and settle there for
+    `UNKNOWN` steps: meanwhile they only fail if they go on by a face. After `LONG` steps, or once a
+    block has fallen past the edge of the model, they count like all others.
+
     Args:
         sim: The simulation.
         stage: Its stage.
@@ -98,15 +104,38 @@ def rests(
         hasty: Whether to end where a body slides that has not moved by `travel` yet: such a
             failure is not sure.
     """
+    notes: list[str] = []
+    verdict = _watched(sim, stage, criterion, wait, start, hasty, notes)
+    verdict.why = "; ".join([verdict.why, *notes])
+    return verdict
+
+
+def _watched(
+    sim: Simulation,
+    stage: StageState,
+    criterion: Criterion,
+    wait: int,
+    start: Floats | None,
+    hasty: bool,
+    notes: list[str],
+) -> Verdict:
+    """The verdict on a stage; what else is to be told goes to the notes."""
     c, chips = criterion, list[Body]()
-    watch = _Watch(sim, c, wait, start)
+    loose = loose_nodes(sim)
+    hasty = hasty and not loose.any()
+    watch = _Watch(sim, c, wait, loose, start)
     most = sim.case.stages[sim.stage_index].max_steps or c.most_steps
     begin = sim.step_count
     while (done := sim.step_count - begin) < most:
         try:
             outcome = sim.advance(stage, min(LOOK, most - done))
+            handed_over = sim.watch_energy(stage)
         except UnstableError as error:
             return Verdict(False, "unstable", str(error), watch.moved(), chips=chips)
+        if handed_over:  # the steps of local damping are others
+            notes.append(handed_over)
+            watch = _Watch(sim, c, max(wait, UNKNOWN), loose, watch.begin)
+            continue
         if outcome == "converged":
             return watch.rest(chips)
         verdict = watch.look()
@@ -119,9 +148,15 @@ def rests(
             continue
         _take_out(sim, verdict.bodies)
         chips += verdict.bodies
-        watch = _Watch(sim, c, wait, watch.begin)
+        loose &= loose_nodes(sim)
+        watch = _Watch(sim, c, wait, loose, watch.begin)
     text = f"no rest in {done:,} steps, ratio {sim.core.unbalance_ratio():.2g}"
     return Verdict(False, "undecided", text, watch.moved(), watch.bodies(), chips)
+
+
+def loose_nodes(sim: Simulation) -> NDArray[np.bool_]:
+    """Nodes of blocks that nothing holds, shape (nodes,)."""
+    return unheld_blocks(sim.build, sim.out)[sim.build.topology.node_block]
 
 
 def _take_out(sim: Simulation, bodies: list[Body]) -> None:
@@ -138,6 +173,7 @@ class _Watch:
     sim: Simulation
     criterion: Criterion
     wait: int
+    loose: NDArray[np.bool_]  # nodes that nothing holds at first
     origin: Floats | None = None  # of reported displacements [m]
     looks: list[Look] = field(default_factory=lambda: [Look()])
 
@@ -146,10 +182,13 @@ class _Watch:
         self.start = self.sim.fields["position"].copy()
         self.begin = self.start if self.origin is None else self.origin
         self.first_step = self.sim.step_count
+        self.falls, self.settles, self.last_fall = self.loose.copy(), bool(self.loose.any()), 0
+        self.counts_from = self.start.copy()  # displacements count from here
+        self.seen_from = self.counts_from
 
     def bodies(self) -> list[Body]:
-        """The bodies that have moved since the watch began."""
-        return moving_bodies(self.sim, self.start)
+        """The bodies that have moved since the watch began, or since they landed."""
+        return moving_bodies(self.sim, self.seen_from)
 
     def moved(self) -> float:
         """Displacement of the farthest node from the origin [m]."""
@@ -170,23 +209,41 @@ class _Watch:
 
     def look(self) -> Verdict | None:
         """Check the present state; returns a verdict if it has failed."""
-        ways = ways_from(self.sim, self.start)
-        moved = float(ways.max()) / self.size
-        ratio = self.sim.core.unbalance_ratio()
-        self.looks.append(Look(moved, min(self.looks[-1].least, ratio)))
-        if moved > self.criterion.far:
-            return Verdict(False, "sliding", self._text(ways), self.moved())
         done = self.sim.step_count - self.first_step
+        self._follow(done)
+        ways = ways_from(self.sim, self.counts_from)
+        ratio = self.sim.core.unbalance_ratio()
+        if ways.max() > self.criterion.far * self.size:
+            self.seen_from = self.counts_from
+            return Verdict(False, "sliding", self._text(ways), self.moved())
+        ways = ways_from(self.sim, self.seen_from)
+        moved = float(ways.max()) / self.size
+        self.looks.append(Look(moved, min(self.looks[-1].least, ratio)))
         return self._goes_on(done, self._text(ways)) if done >= self.wait else None
+
+    def _follow(self, done: int) -> None:
+        """Follow the bodies that nothing held at first, until they have settled."""
+        if not self.settles:
+            return
+        now = self.sim.fields["position"]
+        if self.falls.any():
+            self.counts_from[self.falls] = now[self.falls]
+            self.falls &= loose_nodes(self.sim)
+            self.last_fall = done
+        past = done > LONG or len(self.sim.fallen) > 0
+        self.settles = not past and done - self.last_fall < UNKNOWN
+        if not self.settles:
+            self.counts_from[self.loose] = now[self.loose]
+        self.seen_from = np.where((self.loose & self.settles)[:, None], now, self.counts_from)
 
     def _goes_on(self, done: int, text: str) -> Verdict | None:
         """Failed if it slides or creeps, see `behaviour`.
 
-        If it creeps, this must be so after four times the wait and `UNKNOWN` steps; if it has not
-        moved by `travel`, it is sure only then.
+        If it creeps, this must be so after four times the wait and `UNKNOWN` steps, or those of a
+        fall; if it has not moved by `travel`, it is sure only then.
         """
         saw, now = behaviour(self.looks), self.looks[-1]
-        early = done < max(UNKNOWN, 4 * self.wait)
+        early = done < max(UNKNOWN, 4 * self.wait) or self.settles
         if saw is None or (saw == "creeping" and early):
             return None
         may_tighten = now.moved <= self.criterion.travel  # an anchor, or a joint that closes again
@@ -194,4 +251,5 @@ class _Watch:
         return Verdict(False, saw, why, self.moved(), sure=not (early and may_tighten))
 
     def _text(self, ways: Floats) -> str:
-        return f"{place_of(self.sim, ways)}, {speed_of(self.sim):.2g} m/s"
+        past = ", past the edge of the model" if len(self.sim.fallen) else ""
+        return f"{place_of(self.sim, ways)}, {speed_of(self.sim):.2g} m/s{past}"

@@ -140,7 +140,7 @@ def test_a_factor_of_safety_multiplies_the_factor_of_rough_joints():
     assert law.reduced(of, 1.5) == {"strength_factor": 1.5}
     assert law.numbers(of)["uniaxial_strength"] == 5e7
     assert law.curved and not law.bonds(of)
-    assert law.summary(of) == "8 1, 5e+07 Pa, 27 deg"
+    assert law.summary(of) == "JRC 8, JCS 5e+07 Pa, phi_r 27 deg"
 
 
 def test_an_unknown_law_is_refused():
@@ -176,7 +176,7 @@ def test_a_parameter_that_is_like_another_follows_it():
     assert "residual_friction_angle" not in law.reduced(of, 2)
     given = interface(**RESIDUAL, residual_friction_angle=30)
     assert law.values(given)["residual_friction_angle"] == 30
-    assert law.summary(given) == "40 deg, 30 deg, 0 Pa, bonded c 2e+06 T 0 Pa"
+    assert law.summary(given) == "40 deg, phi_r 30 deg, c_r 0 Pa, bonded c 2e+06 T 0 Pa"
 
 
 @pytest.mark.parametrize(

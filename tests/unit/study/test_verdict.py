@@ -3,13 +3,15 @@
 from types import SimpleNamespace
 
 import numpy as np
+import pytest
 
-from cdem.run.behaviour import LEAST_STEPS, UNKNOWN
+from cdem.run.behaviour import LEAST_STEPS, LONG, UNKNOWN
+from cdem.study import verdict
 from cdem.study.criterion import Criterion
 from cdem.study.verdict import LOOK, _Watch
 
 
-def watch_of(looks, wait=LEAST_STEPS):
+def watch_of(looks, wait=LEAST_STEPS, loose=False):
     """Verdicts on a block of faces of 1 m, at each look with a way [m] and an unbalance ratio.
 
     None before there is one; with a question mark where it is not sure.
@@ -24,15 +26,16 @@ def watch_of(looks, wait=LEAST_STEPS):
         core=SimpleNamespace(unbalance_ratio=lambda: ratio[0]),
         fields={"position": np.zeros((1, 3)), "velocity": np.zeros((1, 3))},
         out=np.zeros(1, bool),
+        fallen=np.zeros(0, int),
         step_count=0,
     )
-    watch = _Watch(sim, Criterion(), wait)
+    watch = _Watch(sim, Criterion(), wait, np.array([loose]))
     for number, (way, left) in enumerate(looks, 1):
         ratio[0] = left
         sim.fields["position"] = np.array([[way, 0.0, 0.0]])
         sim.step_count = number * LOOK
-        verdict = watch.look()
-        yield verdict and verdict.saw + "?" * (not verdict.sure)
+        seen = watch.look()
+        yield seen and seen.saw + "?" * (not seen.sure)
 
 
 def steps(count, way, ratio):
@@ -74,3 +77,45 @@ def test_a_force_that_falls_too_slowly_creeps_in_the_end():
 
 def test_a_body_that_moves_by_a_face_slides_at_any_speed():
     assert list(watch_of([(0.9, 0.1), (1.1, 1e-4)])) == [None, "sliding"]
+
+
+@pytest.fixture
+def lands(monkeypatch):
+    """Let the body land at the look of a number: nothing holds it before."""
+
+    def at(number):
+        looks = iter(range(1, 10_000))
+        monkeypatch.setattr(
+            verdict, "loose_nodes", lambda sim: np.array([next(looks) < number], bool)
+        )
+
+    return at
+
+
+def test_a_body_that_nothing_holds_may_fall(lands):
+    """Beyond a face, and past the steps after which others creep; but not for ever."""
+    lands(10_000)
+    fall = steps(LONG // LOOK + 20, lambda k: 1e-3 * k**2, lambda k: 0.1)
+    seen = list(watch_of(fall, loose=True))
+    assert not any(seen[: LONG // LOOK]) and seen[-1] == "sliding"
+    assert "sliding" in list(watch_of(fall))[:10]
+
+
+@pytest.mark.parametrize("bounces", [0.0, 0.3])
+def test_a_body_that_has_landed_settles(lands, bounces):
+    """It lies still from there on, though the ratio has not fallen yet, or jumps up once more."""
+    lands(50)
+    after = UNKNOWN // LOOK
+
+    def way(k):
+        return min(k, 50) + bounces * (k > 70)
+
+    assert not any(watch_of(steps(50 + after, way, lambda k: 0.1), loose=True))
+
+
+def test_a_body_that_lands_and_goes_on_by_a_face_slides(lands):
+    """A wall whose blocks begin apart, and which falls down."""
+    lands(3)
+    fall = steps(100, lambda k: 1e-3 * k**2, lambda k: 0.1)
+    seen = list(watch_of(fall, loose=True))
+    assert not any(seen[:31]) and seen[31] == "sliding"

@@ -10,9 +10,10 @@ from scipy.optimize import fsolve
 from cdem.case.case import Case
 from cdem.screening.sliding import on_two
 from cdem.verification.goodman_bray import problem as goodman_bray
-from cdem.verification.slopes import bodies, planes, problem, wedges
+from cdem.verification.slopes import planes, problem, wedges
 from cdem.verification.slopes.finer import finer, stiffer
 from cdem.verification.slopes.problem import SHOWN, VARIED, slopes
+from cdem.verification.slopes.second import root
 from cdem.verification.slopes.soil import ACADS, Profile, three_soils
 
 ALL = slopes()
@@ -48,6 +49,24 @@ def test_nearest_value_of_an_interval():
     cut = ALL["vertical cut in clay"]
     assert cut.nearest(1.6) == pytest.approx(1.532) and cut.nearest(1.51) == pytest.approx(1.51)
     assert ALL["buttress"].nearest(9) == ALL["buttress"].factor
+
+
+@pytest.mark.parametrize("name", [name for name, slope in ALL.items() if slope.second])
+def test_the_second_method_finds_the_same_factor(name):
+    """Speeds instead of forces, angles instead of vectors, strips instead of a formula."""
+    assert ALL[name].second == pytest.approx(ALL[name].factor, rel=1e-6)
+
+
+def test_slopes_without_a_second_method_are_published():
+    assert {name.split(" (")[0] for name, slope in ALL.items() if slope.second is None} == {
+        "block toppling, 16 columns",
+        "block toppling, support at the toe",
+        "soil",
+        "soil, 2:1",
+        "soil, tension crack",
+        "soil, three layers",
+        "vertical cut in clay",
+    }
 
 
 def test_plane_with_all_its_forces_by_vectors():
@@ -182,4 +201,4 @@ def test_finer_bodies_keep_their_shape(tmp_path):
 def test_stiffer_rock():
     made = stiffer(ALL["long slope, dry"], 1e-4)
     assert made.case["materials"]["rock"]["young_modulus"] == pytest.approx(20e3 * 5 / 1e-4)
-    assert bodies.root(lambda factor: 2 - factor) == pytest.approx(2)
+    assert root(lambda factor: 2 - factor) == pytest.approx(2)

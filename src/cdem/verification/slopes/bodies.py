@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from itertools import pairwise
 from typing import Any
 
@@ -10,18 +9,11 @@ import numpy as np
 
 from cdem.verification.goodman_bray import problem as goodman_bray
 from cdem.verification.slopes.planes import joint, tan
+from cdem.verification.slopes.second import area, falling, moving, pushing, root, tension
 from cdem.verification.slopes.slope import GRAVITY, Slope, below, rock, section, sides, static
 
 UNIT = 26e3  # [N/m3]
 FIXED = {"material": "rock", "fix": ["x", "y", "z"]}
-
-
-def root(balance: Callable[[float], float], low: float = 0.2, high: float = 5.0) -> float:
-    """The factor at which a balance, which falls with it, is zero; by bisection."""
-    while high - low > 1e-9:
-        middle = 0.5 * (low + high)
-        low, high = (middle, high) if balance(middle) >= 0 else (low, middle)
-    return low
 
 
 def pair(one: str, other: str, friction: float, **more: Any) -> dict[str, Any]:
@@ -82,7 +74,8 @@ def pushed(
         push = weight * per_normal / (np.cos(b) + t * np.sin(b) + per_normal * j)
         return float(t * (wall + push * j) - push)
 
-    return Slope(name, high, case, root(balance), quick=quick)
+    second = pushing(UNIT * area(active), wall, dip, friction, beside)
+    return Slope(name, high, case, root(balance), quick=quick, second=second)
 
 
 def stepped(name: str, friction: float, cohesion: float, quick: bool = False) -> Slope:
@@ -90,7 +83,7 @@ def stepped(name: str, friction: float, cohesion: float, quick: bool = False) ->
     dip, going, riser, count, thick, width, gap = 25.0, 4.0, 1.5, 5, 6.0, 3.0, 0.05
     fall = going * tan(dip)
     top = count * (fall + riser) - riser + thick
-    blocks, weight = [], 0.0
+    blocks, weight, load, treads = [], 0.0, 0.0, 0.0
     for n in range(count):
         right, low = -n * going, n * (fall + riser)
         foot = [(right, low), (right - going, low + fall)]
@@ -100,6 +93,8 @@ def stepped(name: str, friction: float, cohesion: float, quick: bool = False) ->
         blocks += [{"group": "slide", "polyhedron": section(body, width)},
                    {"group": "bed", "polyhedron": section(bed, width)}]  # fmt: skip
         weight += UNIT * going * thick
+        load += UNIT * area(body)
+        treads += float(np.linalg.norm(np.subtract(bed[2], bed[3])))
     strong = {"cohesion": 20e6, "tensile_strength": 20e6}
     held = {"cohesion": cohesion} if cohesion else {}
     pairs = [pair("slide", "bed", friction, **held), pair("slide", "slide", 45, **strong)]
@@ -108,7 +103,8 @@ def stepped(name: str, friction: float, cohesion: float, quick: bool = False) ->
     b = np.radians(dip)
     factor = tan(friction) / tan(dip)
     factor += cohesion * count * (going - gap) / np.cos(b) / (weight * np.sin(b))
-    return Slope(name, top, case, float(factor), quick=quick)
+    second = moving([0.0, -load], dip, friction, held=cohesion * treads)
+    return Slope(name, top, case, float(factor), quick=quick, second=second)
 
 
 def three_sets(name: str, height: float) -> Slope:
@@ -131,7 +127,8 @@ def three_sets(name: str, height: float) -> Slope:
     pairs = [joint("bedding", friction), joint("cross", friction), joint("side", friction)]
     rear = {"surface": {"group": "rock", "normal": [-1, 0, 0]}, "fix": ["x"]}
     case = static(name, model, pairs, [below(0.01), sides(width), rear], rock(UNIT))
-    return Slope(name, height, case, tan(friction) / tan(dip))
+    return Slope(name, height, case, tan(friction) / tan(dip),
+                 second=moving([0.0, -1.0], dip, friction))  # fmt: skip
 
 
 def bridged(name: str, part: float, quick: bool = False) -> Slope:
@@ -148,7 +145,9 @@ def bridged(name: str, part: float, quick: bool = False) -> Slope:
     case = static(name, {"blocks": blocks, "rotate": turn}, pairs, [sides(width)], rock(UNIT),
                   groups={"bridge": FIXED, "joint": FIXED})  # fmt: skip
     factor = tan(friction) / tan(dip) + part * bridge / (UNIT * thick * np.sin(b))
-    return Slope(name, length * np.sin(b), case, float(factor), quick=quick)
+    bridges = sum(b["box"]["size"][0] for b in blocks if b["group"] == "bridge")
+    second = moving([0.0, -UNIT * length * thick], dip, friction, held=bridge * bridges)
+    return Slope(name, length * np.sin(b), case, float(factor), quick=quick, second=second)
 
 
 def roof(name: str, quick: bool = False) -> Slope:
@@ -181,7 +180,8 @@ def roof(name: str, quick: bool = False) -> Slope:
                   bolt_types={"bar": bar}, bolts=[bolt])  # fmt: skip
     weight = UNIT * high * (top + low)
     angle = lean + np.degrees(np.arctan((weight - pull) / (2 * thrust)))
-    return Slope(name, high, case, tan(friction) / tan(float(angle)), quick=quick)
+    return Slope(name, high, case, tan(friction) / tan(float(angle)), quick=quick,
+                 second=falling(weight - pull, thrust, lean, friction))  # fmt: skip
 
 
 def columns(name: str, friction: float, support: float = 0.0) -> Slope:
@@ -229,7 +229,8 @@ def flexural(name: str) -> Slope:
                   rock(UNIT), groups={"bed": FIXED},
                   loads={"gravity": [GRAVITY * np.sin(lean), 0, -GRAVITY * np.cos(lean)]})  # fmt: skip
     stress = UNIT * long * (3 * long / thick * np.sin(lean) - np.cos(lean))
-    return Slope(name, long, case, float(strength / stress), 0.05)
+    second = strength / tension(UNIT * long * thick, float(lean), long, thick)
+    return Slope(name, long, case, float(strength / stress), 0.05, second=second)
 
 
 def bodies() -> list[Slope]:

@@ -6,6 +6,8 @@ from typing import Any
 
 import numpy as np
 
+from cdem.verification.slopes.second import area as area_of
+from cdem.verification.slopes.second import moving
 from cdem.verification.slopes.slope import (
     GRAVITY,
     Slope,
@@ -73,7 +75,10 @@ def cut(
                   [below(0.01), sides(width)], rock(unit))  # fmt: skip
     weight = unit * rise**2 / 2 * (1 / tan(dip) - 1 / tan(face))
     area = rise / np.sin(np.radians(dip))
-    return Slope(name, height, case, sliding(weight, dip, friction, cohesion, area), quick=quick)
+    body = [(start, foot), (-height / tan(face), height), (start - rise / tan(dip), height)]
+    second = moving([0.0, -unit * area_of(body)], dip, friction, held=cohesion * area)
+    return Slope(name, height, case, sliding(weight, dip, friction, cohesion, area), quick=quick,
+                 second=second)  # fmt: skip
 
 
 def cracked(
@@ -116,7 +121,10 @@ def cracked(
     weight = unit * (height**2 * (1 / tan(dip) - 1 / tan(face)) - crack**2 / tan(dip)) / 2
     factor = sliding(weight, dip, friction, cohesion, area, push=WATER * head**2 / 2,
                      lift=WATER * head * area / 2, pull=pull, plunge=plunge)  # fmt: skip
-    return Slope(name, height, case, factor, quick=quick)
+    a = np.radians(plunge)
+    load = [WATER * head**2 / 2 - pull * np.cos(a), -unit * area_of(slide) - pull * np.sin(a)]
+    second = moving(load, dip, friction, held=cohesion * area, lift=WATER * head * area / 2)
+    return Slope(name, height, case, factor, quick=quick, second=second)
 
 
 def anchor(
@@ -158,7 +166,10 @@ def long_slope(name: str, *, wet: bool, quick: bool = False) -> Slope:
     pressure = WATER * thick * np.cos(b) ** 2 if wet else 0.0
     normal = unit * thick * np.cos(b) ** 2 - pressure
     factor = (cohesion + normal * tan(friction)) / (unit * thick * np.sin(b) * np.cos(b))
-    return Slope(name, thick, case, float(factor), quick=quick)
+    along = length / np.cos(b)
+    second = moving([0.0, -unit * area_of(profile) / 2], dip, friction, held=cohesion * along,
+                    lift=pressure * along)  # fmt: skip
+    return Slope(name, thick, case, float(factor), quick=quick, second=second)
 
 
 def shaken(name: str, height: float, part: float, quick: bool = False) -> Slope:
@@ -167,8 +178,10 @@ def shaken(name: str, height: float, part: float, quick: bool = False) -> Slope:
     made.case["loads"]["gravity"] = [part * GRAVITY, 0, -GRAVITY]
     rise = 0.9 * height
     weight = 26e3 * rise**2 / 2 * (1 / tan(35.0) - 1 / tan(65.0))
-    factor = sliding(weight, 35.0, 40.0, 120e3, rise / np.sin(np.radians(35.0)), shaken=part)
-    return Slope(name, height, made.case, factor, quick=quick)
+    area = rise / np.sin(np.radians(35.0))
+    factor = sliding(weight, 35.0, 40.0, 120e3, area, shaken=part)
+    second = moving([part * weight, -weight], 35.0, 40.0, held=120e3 * area)
+    return Slope(name, height, made.case, factor, quick=quick, second=second)
 
 
 def planes() -> list[Slope]:

@@ -29,6 +29,7 @@ class Slope:
         within: Largest error that passes.
         quick: Whether it is run by default.
         mesh: Mesh of the case, or None if the case makes its blocks.
+        second: The factor by a second method of `second.py`, or None.
     """
 
     name: str
@@ -38,6 +39,7 @@ class Slope:
     within: float = 0.015
     quick: bool = False
     mesh: meshio.Mesh | None = None
+    second: float | None = None
 
     def load(self, folder: Path) -> Case:
         """The case, with its mesh written to a folder."""

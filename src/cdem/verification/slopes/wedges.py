@@ -9,6 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cdem.verification.slopes.planes import WATER, joint, tan
+from cdem.verification.slopes.second import between_two
+from cdem.verification.slopes.second import wedge as by_angles
 from cdem.verification.slopes.slope import Slope, below, rock, static
 
 Floats = NDArray[np.float64]
@@ -108,6 +110,21 @@ class Wedge:
             holds += (normal - lift) * tan(plane.friction) + plane.cohesion * area
         return float(holds / drive)
 
+    def by_angles(self, level: float = 0.0) -> float:
+        """The factor from angles between lines, without an anchor."""
+        high = 6 / 7 * self.height
+        head = max(level - self.height / 7, 0.0)
+        mean = WATER * head / 3 * (head / high) ** 2
+        joints = self.first, self.second
+        return by_angles(
+            [p.normal for p in joints],
+            [(tan(p.friction), p.cohesion) for p in joints],
+            Plane(self.face, 90.0, 0.0).normal,
+            high,
+            UNIT,
+            (mean, mean),
+        )
+
     def case(self, title: str, **more: Any) -> dict[str, Any]:
         """The block of a slope around the wedge, held at its foot, its ends and its back."""
         corners, far, margin = self.corners, 1e4, 0.3 * self.height
@@ -132,7 +149,8 @@ class Wedge:
 def wet(name: str, wedge: Wedge, level: float) -> Slope:
     """Water in both joints up to a level."""
     water = {"fields": [{"interface": key, "level": level, "wet": "always"} for key in "ab"]}
-    return Slope(name, wedge.height, wedge.case(name, water=water), wedge.factor(level))
+    return Slope(name, wedge.height, wedge.case(name, water=water), wedge.factor(level),
+                 second=wedge.by_angles(level))  # fmt: skip
 
 
 def anchored(name: str, wedge: Wedge, force: float) -> Slope:
@@ -147,7 +165,10 @@ def anchored(name: str, wedge: Wedge, force: float) -> Slope:
     bolt = {"name": "anchor", "type": "strand", "plate": True, "anchor": True, "pretension": force,
             "points": [head.tolist(), (head + length * way).tolist()]}  # fmt: skip
     case = wedge.case(name, bolt_types={"strand": strand}, bolts=[bolt])
-    return Slope(name, wedge.height, case, wedge.factor(pull=force * way))
+    load = force * way - [0, 0, UNIT * wedge.volume]
+    joints = wedge.first, wedge.second
+    second = between_two(load, [p.normal for p in joints], [tan(p.friction) for p in joints])
+    return Slope(name, wedge.height, case, wedge.factor(pull=force * way), second=second)
 
 
 def wedges() -> list[Slope]:
@@ -163,7 +184,10 @@ def wedges() -> list[Slope]:
            ("wedge, nearly all on one joint", flat),
            ("wedge, cohesion", steep), ("wedge, cohesion, one joint steep", held)]  # fmt: skip
     return [
-        *(Slope(name, w.height, w.case(name), w.factor(), quick=w is steep) for name, w in dry),
+        *(
+            Slope(name, w.height, w.case(name), w.factor(), quick=w is steep, second=w.by_angles())
+            for name, w in dry
+        ),
         wet("wedge, cohesion, water at three quarters of the height", bound, 30.0),
         anchored("wedge, friction, an anchor", small, 2e6),
     ]

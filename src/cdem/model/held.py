@@ -1,0 +1,40 @@
+"""Blocks that nothing holds: neither supports nor bonds, contacts or modules, direct or through others."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cdem.model.build import Build
+
+
+def unheld_blocks(build: Build, out: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Whether each block is held by nothing now; faces hold one another if they may touch.
+
+    Args:
+        build: The model, prepared.
+        out: Whether each block is not in the model now: such a block needs no support.
+    """
+    t, core = build.topology, build.core.fields()
+    pairs = [
+        np.empty((0, 2), int),
+        *build.assembly.pair_faces.values(),
+        core["search.exposed_face"][
+            _pairs_of(core["outer.acting_first"], core["outer.faces_acting_on"])
+        ],
+    ]
+    by_modules = [module.joined_blocks() for module in build.modules.values()]
+    joined = np.concatenate([t.face_block[np.concatenate(pairs)], *by_modules])
+    joined = joined[~out[joined].any(axis=1)]
+    held = out.copy()
+    held[t.node_block[build.arrays["support.row"][: len(t.node_block)] >= 0]] = True
+    while True:  # one round per block in a chain of supports
+        reached = held[joined].any(axis=1) & ~held[joined].all(axis=1)
+        if not reached.any():
+            return ~held
+        held[joined[reached]] = True
+
+
+def _pairs_of(first: NDArray, other: NDArray) -> NDArray:
+    """Row and entry of every entry of ragged rows, shape (entries, 2)."""
+    return np.column_stack([np.repeat(np.arange(len(first) - 1), np.diff(first)), other])
