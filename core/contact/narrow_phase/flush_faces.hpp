@@ -4,7 +4,6 @@
 
 #include "core/contact/geometry/edge.hpp"
 #include "core/contact/geometry/face_geometry.hpp"
-#include "core/contact/narrow_phase/beside_rim.hpp"
 #include "core/records/rules.hpp"
 
 namespace cdem {

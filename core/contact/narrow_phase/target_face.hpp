@@ -1,7 +1,6 @@
 // target_face.hpp - which face a semi-spring touches. Feng et al. (2014), Eq. 6-9.
 #pragma once
 
-#include "core/contact/narrow_phase/beside_rim.hpp"
 #include "core/contact/narrow_phase/contact_columns.hpp"
 #include "core/contact/narrow_phase/flush_faces.hpp"
 #include "core/contact/narrow_phase/vertex_face.hpp"
