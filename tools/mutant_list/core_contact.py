@@ -231,8 +231,8 @@ FAULTS = [
         "wrong side of a seam",
         "the normal of a crossing points into the mother's block",
         "core/contact/narrow_phase/flush_faces.hpp",
-        "point[e], e == 0 ? -n : n, other)",
-        "point[e], e == 0 ? n : -n, other)",
+        "c.point[e], e == 0 ? -c.n : c.n, other)",
+        "c.point[e], e == 0 ? c.n : -c.n, other)",
         "tests/validation/test_flush_blocks.py::test_a_kink_between_flush_blocks_is_that_of_one_mesh",
     ),
     Mutant(

@@ -164,49 +164,66 @@ struct HiddenEdges {
   FlushFaces flush;
   const Index* exposed_face;
 
-  /// Is a contact of two sides beyond a sharp rim, or inside the surface that one of their blocks
-  /// makes with others that lie flush?
+  /// Is a contact of two sides past a rim, or inside the surface that one of their blocks makes
+  /// with others that lie flush?
   CDEM_HD bool hide(Index mother, Index target) const {
-    const Index side[2] = {mother, target};
-    Vec3<Real> x[2], along[2];
+    const Crossed c = crossed(mother, target);
+    return is_past_rim(c) || is_in_seam(c);
+  }
+
+ private:
+  /// Two sides, where they cross.
+  struct Crossed {
+    Index side[2];
+    Vec3<Real> along[2], point[2], n;
+    Real part[2], gap;  // of either side from its start to the point; between the points  [m]
+  };
+  CDEM_HD Crossed crossed(Index mother, Index target) const {
+    Crossed c{.side = {mother, target}, .along = {}, .point = {}, .n = {}, .part = {}, .gap = 0};
+    Vec3<Real> x[2];
     for (Index e = 0; e < 2; ++e) {
-      const ExposedRow& row = geometry.table[side[e] / 4];
-      x[e] = faces.nodes.position(row.corner[side[e] % 4]);
-      along[e] = faces.nodes.position(row.end(side[e] % 4)) - x[e];
+      const ExposedRow& row = geometry.table[c.side[e] / 4];
+      x[e] = faces.nodes.position(row.corner[c.side[e] % 4]);
+      c.along[e] = faces.nodes.position(row.end(c.side[e] % 4)) - x[e];
     }
-    const Vec3<Real> n =
-        edge_normal(along[0], along[1], geometry.normal(target / 4) - geometry.normal(mother / 4));
-    const Crossing<Real> at = cross_edges(x[0], along[0], x[1], along[1], n);
-    const Vec3<Real> point[2] = {x[0] + at.s * along[0], x[1] + at.t * along[1]};
-    // near an end of the other edge, where faces beside it may be less deep
-    const Real length = min_of(geometry.length(mother / 4), geometry.length(target / 4)),
-               near = rules.tolerance * length + abs_of(at.gap) / rules.cone;
-    const auto ends = [&](Real part, const Vec3<Real>& edge) {
-      const Real from_end = min_of(part, 1 - part);
-      return from_end < 0 || from_end * from_end * dot(edge, edge) < near * near;
-    };
-    if ((ends(at.t, along[1]) && rides(mother, point[0], along[0], target, at.gap)) ||
-        (ends(at.s, along[0]) && rides(target, point[1], along[1], mother, at.gap)))
-      return true;
-    if (!flush.first ||
-        flush.meet(faces, rules, geometry.table[mother / 4], geometry.table[target / 4]))
+    c.n = edge_normal(c.along[0], c.along[1],
+                      geometry.normal(target / 4) - geometry.normal(mother / 4));
+    const Crossing<Real> at = cross_edges(x[0], c.along[0], x[1], c.along[1], c.n);
+    c.part[0] = at.s, c.part[1] = at.t, c.gap = at.gap;
+    for (Index e = 0; e < 2; ++e) c.point[e] = x[e] + c.part[e] * c.along[e];
+    return c;
+  }
+  /// Does either edge ride on a face near an end of the other one?
+  CDEM_HD bool is_past_rim(const Crossed& c) const {
+    const Real length = min_of(geometry.length(c.side[0] / 4), geometry.length(c.side[1] / 4)),
+               near = rules.tolerance * length + abs_of(c.gap) / rules.cone;
+    for (Index e = 0; e < 2; ++e) {
+      const Index other = 1 - e;
+      const Real from_end = min_of(c.part[other], 1 - c.part[other]);
+      const bool is_near =
+          from_end < 0 || from_end * from_end * dot(c.along[other], c.along[other]) < near * near;
+      if (is_near && rides(c.side[e], c.point[e], c.along[e], c.side[other], c.gap)) return true;
+    }
+    return false;
+  }
+  CDEM_HD bool is_in_seam(const Crossed& c) const {
+    const ExposedRow* const table = geometry.table;
+    if (!flush.first || flush.meet(faces, rules, table[c.side[0] / 4], table[c.side[1] / 4]))
       return false;
     for (Index e = 0; e < 2; ++e) {
-      const Index exposed = side[e] / 4, k = side[e] % 4;
-      const Index other = geometry.table[side[1 - e] / 4].corner[0];
+      const Index exposed = c.side[e] / 4, k = c.side[e] % 4;
+      const Index other = table[c.side[1 - e] / 4].corner[0];
       const Index at_edge[2] = {exposed_face[exposed], faces.across(exposed, k)};
       for (Index i = 0; i < 2; ++i) {
         const Index f = at_edge[i], own = at_edge[1 - i];
         if (f < 0) continue;
-        if (flush.obstruct(faces, rules, f, point[e], e == 0 ? -n : n, other)) return true;
-        if (own >= 0 && flush.turns_up(faces, rules, f, own, point[e], along[e], other))
+        if (flush.obstruct(faces, rules, f, c.point[e], e == 0 ? -c.n : c.n, other)) return true;
+        if (own >= 0 && flush.turns_up(faces, rules, f, own, c.point[e], c.along[e], other))
           return true;
       }
     }
     return false;
   }
-
- private:
   /// Does an edge touch, at a point, a face beside the other one, or pass it? There it is less
   /// deep, and no face of its own goes below.
   CDEM_HD bool rides(Index side, const Vec3<Real>& point, const Vec3<Real>& along, Index other,
