@@ -215,7 +215,7 @@ FAULTS = [
         "once bonded",
         "blocks that were bonded hide nothing of each other",
         "src/cdem/model/build.py",
-        "flush=~_between_cells(case, names, paired),",
+        "flush=~_beside_cells(case, names, paired),",
         "flush=~paired,",
         "tests/validation/test_flush_blocks.py",
     ),
@@ -226,5 +226,13 @@ FAULTS = [
         "flush_beside(t, face, mate.astype(np.intp))",
         "flush_beside(t, face[:0], mate[:0].astype(np.intp))",
         "tests/validation/test_flush_blocks.py",
+    ),
+    Mutant(
+        "bed of cells",
+        "cells of a split group hide their bed",
+        "src/cdem/model/build.py",
+        "return paired & (cells[:, None] | cells)",
+        "return paired & (cells[:, None] & cells)",
+        "tests/unit/model/test_assemble.py",
     ),
 ]

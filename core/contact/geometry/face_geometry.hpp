@@ -169,8 +169,12 @@ struct BesideRim {
   FaceColumns faces;
   FaceGeometry geometry;
 
-  /// Does a test hold for a face that bends away beside an exposed face, or beside the flat surface
-  /// of which that is a part? It is given the face's centre and normal.
+  /// Cosine between the normals at a rim. Over flatter ridges a vertex may go so deep before it is
+  /// over the face beside it that no contact begins there.
+  static constexpr Real sharp = 0.8;
+
+  /// Does a test hold for a face that bends away at a rim of an exposed face, or of the flat
+  /// surface of which that is a part? It is given the face's centre and normal.
   template <class Test>
   CDEM_HD bool any(Index exposed, const Test& test) const {
     if (any_at(exposed, exposed, test)) return true;
@@ -192,7 +196,7 @@ struct BesideRim {
   CDEM_HD bool any_at(Index part, Index exposed, const Test& test) const {
     const Vec3<Real> own = geometry.normal(exposed), at = geometry.center(exposed);
     const auto bends = [&](const Vec3<Real>& center, const Vec3<Real>& normal) {
-      return !are_flat(normal, own) && dot(own, center - at) < 0 && test(center, normal);
+      return dot(normal, own) < sharp && dot(own, center - at) < 0 && test(center, normal);
     };
     const ExposedRow& row = geometry.table[part];
     for (Index k = 0; k < row.count(); ++k) {

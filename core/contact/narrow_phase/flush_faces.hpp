@@ -99,12 +99,15 @@ struct FlushFaces {
   }
 
  private:
+  /// So wide a rim is at most: less than indented points lie inside of their own face.
+  static constexpr Real most_of_indentation = 0.25;
+
   /// A face that covers a point.
   struct Seam {
     Index face;
     const FaceShape<Real>& shape;
     Vec3<Real> normal, point;
-    Real room;  // within which lengths are the same, no less than its width  [m]
+    Real room;  // within which lengths are the same, wider where it is open  [m]
 
     CDEM_HD Vec3<Real> side(Index k) const {
       return shape.x[k + 1 == shape.count() ? 0 : k + 1] - shape.x[k];
@@ -129,7 +132,9 @@ struct FlushFaces {
       const Real length = min_of(faces.face_length[f], faces.face_length[u]);
       const Vec3<Real> normal = shape.normal();
       const Real apart = abs_of(dot(normal, point - shape.center()));
-      const Seam seam{u, shape, normal, point, max_of(rules.tolerance * length, apart)};
+      const Real widest = most_of_indentation * rules.indentation * length;
+      const Real room = max_of(rules.tolerance * length, min_of(apart, widest));
+      const Seam seam{u, shape, normal, point, room};
       if (dot(n, normal) < -coplanar_faces && apart < rules.indentation * length &&
           shape.inside(point, seam.normal, seam.room) && test(seam))
         return true;
@@ -196,13 +201,14 @@ struct HiddenEdges {
   /// Does either edge ride on a face near an end of the other one?
   CDEM_HD bool is_past_rim(const Crossed& c) const {
     const Real length = min_of(geometry.length(c.side[0] / 4), geometry.length(c.side[1] / 4)),
-               near = rules.tolerance * length + abs_of(c.gap) / rules.cone;
+               room = rules.tolerance * length, near = room + abs_of(c.gap) / rules.cone;
     for (Index e = 0; e < 2; ++e) {
       const Index other = 1 - e;
       const Real from_end = min_of(c.part[other], 1 - c.part[other]);
       const bool is_near =
           from_end < 0 || from_end * from_end * dot(c.along[other], c.along[other]) < near * near;
-      if (is_near && rides(c.side[e], c.point[e], c.along[e], c.side[other], c.gap)) return true;
+      if (is_near && rides(c.side[e], c.point[e], c.along[e], c.side[other], c.gap, room))
+        return true;
     }
     return false;
   }
@@ -227,7 +233,7 @@ struct HiddenEdges {
   /// Does an edge touch, at a point, a face beside the other one, or pass it? There it is less
   /// deep, and no face of its own goes below.
   CDEM_HD bool rides(Index side, const Vec3<Real>& point, const Vec3<Real>& along, Index other,
-                     Real gap) const {
+                     Real gap, Real room) const {
     const auto above = [&](Index face, const Vec3<Real>& n) {
       return face < 0 || !(dot(n, FlushFaces::away(faces, face, point, along)) < -rules.cone);
     };
@@ -237,7 +243,7 @@ struct HiddenEdges {
     const Vec3<Real> one = geometry.normal(other / 4),
                      two = normal_across(faces, geometry, other / 4, other % 4);
     const auto touches = [&](const Vec3<Real>& center, const Vec3<Real>& n) {
-      return dot(n, point - center) > gap && !(dot(n, one) > coplanar_faces) &&
+      return dot(n, point - center) > max_of(gap, -room) && !(dot(n, one) > coplanar_faces) &&
              !(dot(n, two) > coplanar_faces) && above(own[0], n) && above(own[1], n);
     };
     for (const Index exposed : at_edge)

@@ -340,15 +340,15 @@ struct ResolveTargets : FaceSearch {
   CDEM_HD bool is_better(Index m, Index t, Real gap, const Seeker& s) const {
     return gap < none && gap > s.gap && !hidden(m, t, gap, s) && !rides(m, t, gap, s);
   }
-  /// Does a vertex touch a face beside t, or pass it? There it is less deep; where it is hardly
-  /// deeper, it touches the face that opposes m more.
+  /// Does a vertex touch a face beside t, or pass it? It is hardly behind that, and less deep than
+  /// behind t or opposed to m more.
   CDEM_HD bool rides(Index m, Index t, Real gap, const Seeker& s) const {
     const Vec3<Real> mother = geometry.normal(m);
     const Real opposed = dot(mother, geometry.normal(t)),
                room = rules.tolerance * smaller_length(m, t);
     return BesideRim{faces, geometry}.any(t, [&](const Vec3<Real>& center, const Vec3<Real>& n) {
-      const Real slack = dot(mother, n) < opposed ? room : 0.0;
-      return dot(n, s.v - center) > gap - slack && deepest(s.node, s.v, n);
+      const Real up = dot(n, s.v - center);
+      return up > -room && (up > gap || dot(mother, n) < opposed) && deepest(s.node, s.v, n);
     });
   }
   /// Is a contact of a vertex of exposed face m with t inside the surface that one of their blocks

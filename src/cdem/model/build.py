@@ -266,7 +266,7 @@ def _assemble(
         law_parameters=np.array([_law_row(m) for m in materials]),
         interface_of=np.maximum(interface_of, 0),
         paired=paired,
-        flush=~_between_cells(case, names, paired),
+        flush=~_beside_cells(case, names, paired),
         strength_factors=[strength_factors_of(law) for law in laws],
         breaks=that_may_break(case),
         stiffness=np.array([bond_row(law) for law in laws]).reshape(-1, 4),
@@ -299,17 +299,16 @@ def _assemble(
     return parts
 
 
-def _between_cells(
-    case: Case, names: Sequence[str], paired: NDArray[np.bool_]
-) -> NDArray[np.bool_]:
-    """Whether pairs of these kinds of faces are between the cells of a split group, (kinds, kinds).
+def _beside_cells(case: Case, names: Sequence[str], paired: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Whether pairs of these kinds of faces have cells of a split group on a side, (kinds, kinds).
 
     Blocks hide the faces that they share from others, whether a bond holds them or not. Cells of a
-    group do not: they have one surface while they are bonded, and rubble would ask at each contact.
+    group do not: they have one surface while they are bonded, and rubble would ask at each contact
+    and lose the bed where the cells are in one another.
     """
-    split = [case.model.split.get(name) == "elements" for name in names]
-    cells = np.pad(split, (0, len(paired) - len(names)))
-    return paired & np.diag(cells)
+    split = np.array([case.model.split.get(name) == "elements" for name in names])
+    cells = np.resize(split, len(paired))  # faces of joints follow, by group
+    return paired & (cells[:, None] | cells)
 
 
 def _made_up(t: Topology, made_up: dict[str, Compensation]) -> tuple[Floats, Floats]:
