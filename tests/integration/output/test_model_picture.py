@@ -72,7 +72,7 @@ def test_joints_are_whole_and_bolts_and_water_are_drawn(run_cli, tmp_path, monke
     monkeypatch.chdir(tmp_path)
     legend, image = _inside(run_cli, monkeypatch, "road_cut")
     assert [label for label, _ in legend] == [
-        "rock - rock, joint bedding: 1,088 m2, 30 deg, 40000 Pa, bonded c 4e+04 T 0 Pa",
+        "rock - rock, joint bedding: 1,088 m2, 30 deg, c_r 40000 Pa, bonded c 4e+04 T 0 Pa",
         "rock - rock, joint steep: 1,000 m2, 35 deg",
         "bolts anchors: 8 of strand5, 22 m",
         "water table: plane",
