@@ -53,7 +53,8 @@ void find_target_edges(const Model& m, State& s, Queue q) {
                                 .pairs = pairs,
                                 .rules = m.rules});
   for_each_selected(q, pair_count, edge_search(m, s));
-  for_each_item(q, pair_count, DropHiddenEdges{hidden_edges(m, s), pairs});
+  if (m.flush_face.size() > 0)
+    for_each_item(q, pair_count, DropHiddenEdges{hidden_edges(m, s), pairs});
   list_rows(q, pair_count, EdgeWays::count * pair_count, count, FoundEdges{pairs}, s.edges.first,
             s.edges.found);
   make_room_for_edges(s);

@@ -246,7 +246,7 @@ struct ResolveTargets : FaceSearch {
       const bool penetration = s.free && plane < -entry && encloses(t, s, plane);
       const Real limit = penetration ? deepest_inside(t, length) : entry;
       const Real gap = qualify(m, s.node, s.v, s.p, t, {s.lifted, limit, penetration});
-      if (is_better(m, t, gap, s)) {
+      if (is_better(m, k, t, gap, s)) {
         s.best = t;
         s.gap = gap;
       }
@@ -257,8 +257,6 @@ struct ResolveTargets : FaceSearch {
  private:
   static constexpr Real none = 1e300;          // a gap that is no contact
   static constexpr Real surely_shallow = 0.9;  // part of the entry that needs no look at velocities
-  static constexpr Real rim_part = 0.1;        // of its depth: so deep a vertex lies on a face
-  static constexpr Index most_around = 32;     // faces at a vertex that are looked at
   static constexpr Real turn = 1.5;  // a loaded spring enters its next face by so much of its depth
 
   /// One vertex that seeks its target.
@@ -337,56 +335,21 @@ struct ResolveTargets : FaceSearch {
     return true;
   }
   /// Does vertex k of exposed face m, at this gap to t, make a contact, and the best one yet?
-  CDEM_HD bool is_better(Index m, Index t, Real gap, const Seeker& s) const {
-    return gap < none && gap > s.gap && !hidden(m, t, gap, s) && !rides(m, t, gap, s);
+  CDEM_HD bool is_better(Index m, Index k, Index t, Real gap, const Seeker& s) const {
+    return gap < none && gap > s.gap && !hidden(m, k, t, s);
   }
-  /// Does a vertex touch a face beside t, or pass it? It is hardly behind that, and less deep than
-  /// behind t or opposed to m more.
-  CDEM_HD bool rides(Index m, Index t, Real gap, const Seeker& s) const {
-    const Vec3<Real> mother = geometry.normal(m);
-    const Real opposed = dot(mother, geometry.normal(t)),
-               room = rules.tolerance * smaller_length(m, t);
-    return BesideRim{faces, geometry}.any(t, [&](const Vec3<Real>& center, const Vec3<Real>& n) {
-      const Real up = dot(n, s.v - center);
-      return up > -room && (up > gap || dot(mother, n) < opposed) && deepest(s.node, s.v, n);
-    });
-  }
-  /// Is a contact of a vertex of exposed face m with t inside the surface that one of their blocks
+  /// Is a contact of vertex k of exposed face m with t inside the surface that one of their blocks
   /// makes with others that lie flush?
-  CDEM_HD bool hidden(Index m, Index t, Real gap, const Seeker& s) const {
-    if (!flush.first || flush.meet(faces, rules, geometry.table[m], geometry.table[t]))
-      return false;
+  CDEM_HD bool hidden(Index m, Index k, Index t, const Seeker& s) const {
+    if (!flush.first || flush.met(faces, geometry.table[m], geometry.table[t])) return false;
     const Index face = exposed_face[m], target = exposed_face[t];
     const Vec3<Real> n = geometry.normal(t);
     if (flush.cover(faces, rules, target, s.p - plane_gap(s.p, t) * n, s.node)) return true;
-    if (!flush.at_node[s.node]) return false;
-    const Index spared = faces.vertex(target, 0);
-    Index f = face;
-    for (Index turn = 0; turn < most_around; ++turn) {
-      if (flush.obstruct(faces, rules, f, s.v, -n, spared)) return true;
-      Index side;
-      const Index next = flush.next_around(faces, f, s.node, side);
-      if (next < 0) return false;
-      const Index end = faces.vertex(f, side + 1 == faces.vertex_count(f) ? 0 : side + 1);
-      const Vec3<Real> along = faces.nodes.position(end) - s.v;
-      if (is_in_foot(f, next, along, t, gap, s) || is_in_foot(next, f, along, t, gap, s))
-        return true;
-      if ((f = next) == face) return false;
-    }
+    const Index last = (k == 0 ? faces.vertex_count(face) : k) - 1;
+    const Index at_vertex[3] = {face, faces.across(m, k), faces.across(m, last)};
+    for (const Index f : at_vertex)
+      if (f >= 0 && flush.obstruct(faces, rules, f, s.v, -n, faces.vertex(target, 0))) return true;
     return false;
-  }
-  /// Does the surface turn up at a vertex, from a face of its block to that of a body that covers
-  /// another one? Of the corners in such a foot the one that is less deep touches.
-  CDEM_HD bool is_in_foot(Index covered, Index own, const Vec3<Real>& along, Index t, Real gap,
-                          const Seeker& s) const {
-    const Index target = exposed_face[t];
-    if (!flush.turns_up(faces, rules, covered, own, s.v, along, faces.vertex(target, 0)))
-      return false;
-    const FaceShape<Real> shape = faces.shape(own), other = faces.shape(target);
-    Real deepest = none;
-    for (Index j = 0; j < other.count(); ++j)
-      deepest = min_of(deepest, dot(shape.normal(), other.x[j] - shape.center()));
-    return deepest > gap;
   }
   CDEM_HD bool is_of_body(Index node, Index t) const {
     return faces.body[node] == faces.body[faces.vertex(exposed_face[t], 0)];
