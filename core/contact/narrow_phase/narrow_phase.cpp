@@ -17,6 +17,7 @@ void find_target_faces(const Model& m, State& s, Queue q) {
   for_each_item(q, count, BeginTargets{search.springs});
   for_each_selected(q, count, UpdateHeldTargets{search});
   for_each_selected(q, count, FilterNewTargets{search});
+  for_each_item(q, count, DropPassedTargets{search});
   for_each_item(q, count, ResolveTargets{search});
   for_each_item(q, count, HoldAtRims{search});
 }
