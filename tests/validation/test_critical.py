@@ -541,6 +541,9 @@ def test_a_loose_stone_does_not_change_the_factor_of_the_rock():
     assert sum(t.steps for t in beside.trials) < 1.5 * sum(t.steps for t in alone.trials)
     (line,) = [text for text in told if "before the search" in text]
     assert "at rest after" in line and "stone has moved 0.4 m" in line
+    shown = beside.body  # the fall is not in the picture
+    ways, height = np.linalg.norm(shown.point_data["displacement"], axis=1), shown.points[:, 2]
+    assert height[ways > 0.5 * ways.max()].min() > 2 and 0 < ways.max() < 0.05
 
 
 def test_a_loose_stone_does_not_change_a_critical_value():
