@@ -133,7 +133,7 @@ def test_a_slab_passes_a_flat_seam(lean):
 @pytest.mark.parametrize("opening", [0.01, 0.05, 0.3])
 @pytest.mark.parametrize("lean", [0.75, -0.3])
 def test_a_slab_passes_an_open_seam(lean, opening):
-    """Of 2.5 to 120 mm, which a bond has held. Exact: it keeps its speed, here within 8e-4.
+    """Of 2.5 to 120 mm, which a bond has held. Exact: it keeps its speed, here within 1e-3.
 
     It turned back at the rim of the block in front, on either side of a sharp one.
     """
@@ -142,10 +142,10 @@ def test_a_slab_passes_an_open_seam(lean, opening):
 
 @pytest.mark.parametrize(("lean", "rise"), [(0.75, 0.35), (-0.3, 0.35), (0.2, 0.7), (-0.75, 0.1)])
 def test_a_slab_passes_a_kink_with_any_front(lean, rise, tmp_path):
-    """As on one mesh, within 5 %: the slab rings. It turned back where its front leant forwards."""
+    """As on one mesh, here within 1.7 %: the slab rings. It turned back where its front leant forwards."""
     one = pass_seam(lean, rise, mesh=tmp_path / "bed.vtk")
-    assert pass_seam(lean, rise) == pytest.approx(one, rel=0.1)
-    assert pass_seam(lean, rise, opening=0.01, bonded=True) == pytest.approx(one, rel=0.1)
+    assert pass_seam(lean, rise) == pytest.approx(one, rel=0.05)
+    assert pass_seam(lean, rise, opening=0.01, bonded=True) == pytest.approx(one, rel=0.05)
 
 
 def test_an_open_joint_gives_no_area_to_the_corner_beside_it():
@@ -189,9 +189,9 @@ def test_an_open_joint_gives_no_area_to_the_corner_beside_it():
 
 
 def test_blocks_that_have_slid_along_each_other_hide_each_other(tmp_path):
-    """By 0.25 m, so that their faces lie on others than at the start; here within 1 %.
+    """By 0.25 m, so that their faces lie on others than at the start; here within 1.3 %.
 
     The slab met the triangle of the hidden side that its first mate had left, and turned back.
     """
     one = pass_seam(0.75, 0.35, mesh=tmp_path / "bed.vtk")
-    assert pass_seam(0.75, 0.35, along=1, bonded=True) == pytest.approx(one, rel=0.1)
+    assert pass_seam(0.75, 0.35, along=1, bonded=True) == pytest.approx(one, rel=0.05)
