@@ -142,7 +142,7 @@ def test_a_slab_passes_an_open_seam(lean, opening):
 
 @pytest.mark.parametrize(("lean", "rise"), [(0.75, 0.35), (-0.3, 0.35), (0.2, 0.7), (-0.75, 0.1)])
 def test_a_slab_passes_a_kink_with_any_front(lean, rise, tmp_path):
-    """As on one mesh, here within 1.7 %: the slab rings. It turned back where its front leant forwards."""
+    """As on one mesh, here within 1.7 %: it rings. It turned back where its front leant forwards."""
     one = pass_seam(lean, rise, mesh=tmp_path / "bed.vtk")
     assert pass_seam(lean, rise) == pytest.approx(one, rel=0.05)
     assert pass_seam(lean, rise, opening=0.01, bonded=True) == pytest.approx(one, rel=0.05)
