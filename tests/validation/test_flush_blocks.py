@@ -195,3 +195,9 @@ def test_blocks_that_have_slid_along_each_other_hide_each_other(tmp_path):
     """
     one = pass_seam(0.75, 0.35, mesh=tmp_path / "bed.vtk")
     assert pass_seam(0.75, 0.35, along=1, bonded=True) == pytest.approx(one, rel=0.05)
+
+
+def test_a_slab_that_a_joint_has_cut_with_its_bed_passes_the_kink(tmp_path):
+    """Its corners and those of the seam began at one place; here within 0.2 % of one mesh."""
+    one = pass_seam(0.75, 0.35, start=0, mesh=tmp_path / "bed.vtk")
+    assert pass_seam(0.75, 0.35, start=0) == pytest.approx(one, rel=0.02)
