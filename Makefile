@@ -48,9 +48,10 @@ coverage: setup
 	$(BIN)/python -m gcovr --delete --gcov-suspicious-hits-threshold 0 --filter core/ \
 	  --sort uncovered-percent build/coverage
 
-# Faults planted one by one must each fail a test; with T=name some of them. Cut off, it goes on.
+# Faults planted one by one must each fail a test; with T=name some of them. Cut off, it goes on from
+# tools/mutant_list/known.json, on any machine, and renews docs/mutants.md.
 mutants: setup
-	$(BIN)/python tools/mutants.py --state build/mutants/faults.json $(T)
+	$(BIN)/python tools/mutants.py --state tools/mutant_list/known.json --write $(T)
 
 # Speeds at this commit on this machine, a point of docs/benchmark_history.jsonl.
 benchmark: dev

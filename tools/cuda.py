@@ -37,6 +37,7 @@ LIMITS = {
     "CorotationalForce<Tet4, IgnoreRotation, NoFlow>": (128, 0),
     "EachNumber<1>": (32, 0),
     "FilterEdgePairs": (128, 0),
+    "DropPassedTargets": (168, 0),
     "FilterNewTargets": (168, 0),
     "KineticEnergy": (40, 0),
     "MarkNearEdges": (64, 0),

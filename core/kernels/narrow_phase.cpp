@@ -10,6 +10,7 @@ namespace cdem {
 template void for_each_item(Queue, Index, const BeginTargets&);
 template void for_each_selected(Queue, Index, const UpdateHeldTargets&);
 template void for_each_selected(Queue, Index, const FilterNewTargets&);
+template void for_each_item(Queue, Index, const DropPassedTargets&);
 template void for_each_item(Queue, Index, const ResolveTargets&);
 template void for_each_item(Queue, Index, const HoldAtRims&);
 template void for_each_item(Queue, Index, const DropHiddenEdges&);

@@ -359,6 +359,10 @@ void describe_exterior_edges(Model& m, Visit&& given) {
          .rows = "flush_faces",
          .refers_to = {"faces"}},
         m.flush_face);
+  given({.name = "node.flush",
+         .meaning = "whether a face at the node has such faces",
+         .rows = "nodes"},
+        m.node_flush);
   given({.name = "interface.of",
          .meaning = "interface between two classes of faces",
          .rows = "class_pairs",

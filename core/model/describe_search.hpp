@@ -287,11 +287,11 @@ void describe_inner_edges(InnerList& inner, Rebuilt&& rebuilt) {
           inner.open);
   rebuilt("find_target_edges",
           {.name = "inner.held",
-           .meaning = "place of the contact of a side as the mother, or -1",
+           .meaning = "place one step ago of the contact of a side as the mother, or -1",
            .rows = "inner_edge_pairs",
            .numbers = 4,
            .layout = Layout::columns,
-           .refers_to = {"edge_contacts"}},
+           .refers_to = {"old_edge_contacts"}},
           inner.held);
 }
 

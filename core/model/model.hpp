@@ -66,6 +66,7 @@ struct Model {
   Column<Index> edge_nodes, edge_faces, edge_star_first, edge_star;
   Column<Flag> face_initially_exposed, face_movable;
   Column<Index> flush_first, flush_face;  // faces of other blocks that began flush with a face
+  Column<Flag> node_flush;                // has one of the faces at a node any?
 
   // interfaces
   PairSet triangles, quads, overlaps;

@@ -44,8 +44,7 @@ struct ActOnFaces {
                                .velocity = nodes.velocity(face_nodes.at(k, f)),
                                .normal = (T(1.0) / size) * area[k],
                                .factor = look_up(entries.factor, own)};
-      const Vec3<T> force = size * traction(at, own, acts, k, f);
-      out.set(f, count, k, select(acts, force, Vec3<T>{zero, zero, zero}));
+      out.set(f, count, k, size * traction(at, own, acts, k, f));
     }
   }
 

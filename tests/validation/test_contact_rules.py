@@ -263,7 +263,7 @@ def test_no_vertex_is_deep_inside_its_own_bonded_body():
     assert not any("overlap" in warning for warning in sim.audit.warnings)
     sim.step(1)
     touches = sim.core.fields()["spring.target"] >= 0
-    assert touches.sum() > 20
+    assert touches.sum() > 10
     assert rows_of(sim.core, "spring.state").stress_free_gap[touches].min() > -1e-6
 
 

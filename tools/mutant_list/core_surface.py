@@ -15,8 +15,8 @@ FAULTS = [
         "too early",
         "an entry acts before its stage",
         "core/surface/act_on_faces.hpp",
-        "out.set(f, count, k, select(acts, force, Vec3<T>{zero, zero, zero}));",
-        "out.set(f, count, k, force);",
+        "const auto mine = acts & (law > T(number - 0.5))",
+        "const auto mine = (law > T(number - 0.5))",
         "tests/core/surface/test_act_on_faces.cpp",
     ),
     Mutant(

@@ -211,4 +211,28 @@ FAULTS = [
         "minlength=len(t.block_group))[block] > 0",
         "tests/unit/model/test_assemble.py",
     ),
+    Mutant(
+        "once bonded",
+        "blocks that were bonded hide nothing of each other",
+        "src/cdem/model/build.py",
+        "flush=~_beside_cells(case, names, paired),",
+        "flush=~paired,",
+        "tests/validation/test_flush_blocks.py",
+    ),
+    Mutant(
+        "next in the wall",
+        "a face is covered by its mate alone, not by those beside it",
+        "src/cdem/model/flush.py",
+        "flush_beside(t, face, mate.astype(np.intp))",
+        "flush_beside(t, face[:0], mate[:0].astype(np.intp))",
+        "tests/validation/test_flush_blocks.py",
+    ),
+    Mutant(
+        "bed of cells",
+        "cells of a split group hide their bed",
+        "src/cdem/model/build.py",
+        "return paired & (cells[:, None] | cells)",
+        "return paired & (cells[:, None] & cells)",
+        "tests/unit/model/test_assemble.py",
+    ),
 ]

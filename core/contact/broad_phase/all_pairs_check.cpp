@@ -50,6 +50,7 @@ class AllPairs {
   AllPairs(const Model& model, State& state)
       : m(model),
         springs(on_host(ResolveTargets{face_search(model, state)})),
+        passed(on_host(DropPassedTargets{face_search(model, state)})),
         rims(on_host(HoldAtRims{face_search(model, state)})),
         edges(on_host(touching_edges(model, state))),
         hidden(on_host(hidden_edges(model, state))),
@@ -93,8 +94,9 @@ class AllPairs {
     for (Index k = 0; k < springs.faces.vertex_count(face(x)); ++k) {
       const Index node = springs.faces.vertex(face(x), k);
       open.clear();
-      std::copy_if(others.begin(), others.end(), std::back_inserter(open),
-                   [&](Index t) { return !Bonded::among(bonded.vertices, node, t); });
+      std::copy_if(others.begin(), others.end(), std::back_inserter(open), [&](Index t) {
+        return !Bonded::among(bonded.vertices, node, t) && !passed.passes(x, k, t);
+      });
       const FaceList list{open.data(), nullptr, Index(open.size())};
       Index target = springs.choose(x, k, list, &ignored);
       const Index before = springs.springs.target_before[4 * x + k];
@@ -134,6 +136,7 @@ class AllPairs {
 
   const Model& m;
   const ResolveTargets springs;
+  const DropPassedTargets passed;
   const HoldAtRims rims;
   const TouchingEdges edges;
   const HiddenEdges hidden;

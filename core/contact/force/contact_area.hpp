@@ -63,7 +63,9 @@ struct SumTouching {
         held = ContactState::at(contacts.springs.state, contact);
     }
     const Index interface = laws.between(geometry, mother, target);
-    if (!laws.interfaces.interfaces[interface].asks_area) return;
+    if (!laws.interfaces.interfaces[interface].asks_area ||
+        !laws.have_area(geometry, mother, target))
+      return;
     const bool pressed = held.penetration > 0;
     const Real part = (is_edge ? 1.0 : 0.5) * (pressed ? 1.0 : of_open);
     sum.stiffness += part * laws.spring(geometry, interface, mother, target).n();
@@ -113,7 +115,7 @@ struct ShareAreas {
     const Real reach = geometry.table[a].reach + geometry.table[b].reach;
     const Vec3<Real> apart = geometry.center(a) - geometry.center(b);
     if (dot(apart, apart) > reach * reach) return 0;
-    if (!(dot(geometry.normal(a), geometry.normal(b)) < -rules.opposing)) return 0;
+    if (!laws.have_area(geometry, a, b)) return 0;
     const Real length = min_of(geometry.length(a), geometry.length(b));
     const Real height =
         min_of(faces.face_height[exposed_face[a]], faces.face_height[exposed_face[b]]);

@@ -38,12 +38,19 @@ struct ContactLaws {
                             .stiffness = JointStiffness<T>::of(numbers_of(normal, interface, m, t),
                                                                numbers_of(shear, interface, m, t))};
   }
+  /// May a contact have area? Its faces are within 20 degrees of parallel; else a corner or an edge
+  /// of one meets the other, and shares of theirs belong to contacts with other faces.
+  template <class Ids>
+  CDEM_HD auto have_area(const FaceGeometry& geometry, const Ids& m, const Ids& t) const {
+    return dot(geometry.normal(m), geometry.normal(t)) < Number<Ids>(-parallel);
+  }
   /// Let the spring of a contact that was pressed one step ago have the area that is in contact, if
   /// its law asks for that. A straight spring keeps its stiffness, so that area changes strength
   /// alone; a curve is of tractions, and goes with the area.
   template <class Laws, class Ids, class T>
-  CDEM_HD void take_true_area(ContactSpring<T>& spring, const Ids& interface, const Ids& m,
-                              const Ids& t, const Truth<T>& pressed) const {
+  CDEM_HD void take_true_area(ContactSpring<T>& spring, const FaceGeometry& geometry,
+                              const Ids& interface, const Ids& m, const Ids& t,
+                              const Truth<T>& pressed) const {
     if constexpr (Laws::count > 1) {
       if (!area_per_stiffness) return;
       const Interface* table = interfaces.interfaces;
@@ -51,7 +58,8 @@ struct ContactLaws {
       const auto asks =
           numbers_of([&](Index i) { return table[i].asks_area ? 1.0 : 0.0; }, interface) > none;
       const T area = look_up(area_per_stiffness, m) + look_up(area_per_stiffness, t);
-      const T ratio = select(pressed, spring.stiffness.n * area, none);
+      const auto has = pressed & have_area(geometry, m, t);
+      const T ratio = select(has, spring.stiffness.n * area, none);
       const auto curved = interfaces.closes_by_curve(interface);
       const T within = max_of(min_of(ratio, T(most_of_curve)), T(least_of_curve));
       const T larger = select(asks, select(curved, within, max_of(ratio, T(least_part))), one);
@@ -71,6 +79,7 @@ struct ContactLaws {
   }
 
  private:
+  static constexpr Real parallel = 0.94;  // a cosine
   // of its share: what a corner or an edge has that touches, and what the step has room for
   static constexpr Real least_part = 1e-3, least_of_curve = 0.5, most_of_curve = 2;
 };

@@ -33,8 +33,8 @@ struct UpdateEdgeForces {
     const auto pair = relative_motion(contact);
     const auto unloading = Unloading<T>::of(laws, interface);
     const Before<T> old = before(contact.before);
-    laws.template take_true_area<Laws>(spring, interface, contact.mother_face, contact.target_face,
-                                       old.force.penetration > zero);
+    laws.template take_true_area<Laws>(spring, geometry, interface, contact.mother_face,
+                                       contact.target_face, old.force.penetration > zero);
     const T gap = pair.crossing.gap;
     const T free =
         select(old.begins, starting_stress_free_gap(gap, pair.gap_rate, T(faces.dt), zero, zero),

@@ -35,7 +35,7 @@ struct UpdateSpringForces {
     spring.area = T(0.5) * spring.area;  // the other block's semi-springs see the contact too
     const auto unloading = Unloading<T>::of(laws, interface);
     Before<T> old = before(slot, target.begins);
-    laws.template take_true_area<Laws>(spring, interface, item.row, target.face,
+    laws.template take_true_area<Laws>(spring, geometry, interface, item.row, target.face,
                                        old.force.penetration > zero);
     const T gap = pair.foot.gap, dt(faces.dt);
     const T free =

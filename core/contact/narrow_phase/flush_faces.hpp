@@ -1,4 +1,5 @@
-// flush_faces.hpp - parts of initially flush blocks that are hidden from third blocks.
+// flush_faces.hpp - parts of initially flush blocks that are hidden from third blocks, and sharp
+// rims.
 #pragma once
 
 #include "core/contact/geometry/edge.hpp"
@@ -15,13 +16,20 @@ struct FlushFaces {
   const Index* first;       // [face + 1]; null: no faces began flush
   const Index* mate;        // faces of other blocks, ascending in a row
   const Index* edge_faces;  // [edge][2] of one block, or -1
+  const Flag* at_node;      // has one of the faces at a node any?
 
-  /// Did two exposed faces begin with a corner at one place? Their blocks meet in the seams of
-  /// others there, and neither hides the other.
-  CDEM_HD static bool met(const FaceColumns& faces, const ExposedRow& a, const ExposedRow& b) {
+  /// Have two exposed faces a corner where it began, at one place? Their blocks meet in the seams
+  /// of others there, and neither hides the other.
+  CDEM_HD static bool meet(const FaceColumns& faces, const SearchRules& rules, const ExposedRow& a,
+                           const ExposedRow& b) {
+    const Real room = rules.tolerance * min_of(a.reach, b.reach);
     for (Index i = 0; i < 4; ++i)
-      for (Index j = 0; j < 4; ++j)
-        if (faces.node_place[a.corner[i]] == faces.node_place[b.corner[j]]) return true;
+      for (Index j = 0; j < 4; ++j) {
+        const Index p = a.corner[i], q = b.corner[j];
+        if (faces.node_place[p] != faces.node_place[q]) continue;
+        const Vec3<Real> apart = faces.nodes.position(p) - faces.nodes.position(q);
+        if (dot(apart, apart) < room * room) return true;
+      }
     return false;
   }
 
@@ -69,21 +77,37 @@ struct FlushFaces {
         if (!seam.ends_at(k)) continue;
         const Index next = face_beyond(faces, seam.face, k);
         if (next < 0) continue;
-        const Vec3<Real> to = faces.shape(next).center() - point;
-        const Vec3<Real> out = to - (dot(to, along) / dot(along, along)) * along;
-        if (dot(faces.shape(own).normal(), unit(out)) > rules.cone) return true;
+        if (dot(faces.shape(own).normal(), away(faces, next, point, along)) > rules.cone)
+          return true;
       }
       return false;
     });
   }
 
+  /// The direction in which a face leads away from a point on an edge of it.
+  CDEM_HD static Vec3<Real> away(const FaceColumns& faces, Index face, const Vec3<Real>& point,
+                                 const Vec3<Real>& along) {
+    const Vec3<Real> to = faces.shape(face).center() - point;
+    return unit(to - (dot(to, along) / dot(along, along)) * along);
+  }
+  /// The next of the faces of a block that meet at a node of theirs, and the side of this one
+  /// between both.
+  CDEM_HD Index next_around(const FaceColumns& faces, Index face, Index node, Index& side) const {
+    for (side = 0; side < 3 && faces.vertex(face, side) != node;) ++side;
+    const Index* at = edge_faces + 2 * std::size_t(faces.face_edges[4 * face + side]);
+    return at[at[0] == face];
+  }
+
  private:
+  /// So wide a rim is at most: less than indented points lie inside of their own face.
+  static constexpr Real most_of_indentation = 0.25;
+
   /// A face that covers a point.
   struct Seam {
     Index face;
     const FaceShape<Real>& shape;
     Vec3<Real> normal, point;
-    Real room;  // within which lengths are the same  [m]
+    Real room;  // within which lengths are the same, wider where it is open  [m]
 
     CDEM_HD Vec3<Real> side(Index k) const {
       return shape.x[k + 1 == shape.count() ? 0 : k + 1] - shape.x[k];
@@ -106,9 +130,12 @@ struct FlushFaces {
       if (faces.body[faces.vertex(u, 0)] == spared) continue;
       const FaceShape<Real> shape = faces.shape(u);
       const Real length = min_of(faces.face_length[f], faces.face_length[u]);
-      const Seam seam{u, shape, shape.normal(), point, rules.tolerance * length};
-      if (dot(n, seam.normal) < -coplanar_faces &&
-          abs_of(dot(seam.normal, point - shape.center())) < rules.indentation * length &&
+      const Vec3<Real> normal = shape.normal();
+      const Real apart = abs_of(dot(normal, point - shape.center()));
+      const Real widest = most_of_indentation * rules.indentation * length;
+      const Real room = max_of(rules.tolerance * length, min_of(apart, widest));
+      const Seam seam{u, shape, normal, point, room};
+      if (dot(n, normal) < -coplanar_faces && apart < rules.indentation * length &&
           shape.inside(point, seam.normal, seam.room) && test(seam))
         return true;
     }
@@ -133,8 +160,8 @@ struct FlushFaces {
   }
 };
 
-/// Sides of exposed faces, which are 4 * exposed face + side, in the seams of blocks that lie
-/// flush.
+/// Pairs of sides of exposed faces, which are 4 * exposed face + side, that must not begin to
+/// touch.
 struct HiddenEdges {
   FaceColumns faces;
   FaceGeometry geometry;
@@ -142,34 +169,85 @@ struct HiddenEdges {
   FlushFaces flush;
   const Index* exposed_face;
 
-  /// Is a contact of two sides inside the surface that one of their blocks makes with others that
-  /// lie flush?
+  /// Is a contact of two sides past a rim, or inside the surface that one of their blocks makes
+  /// with others that lie flush?
   CDEM_HD bool hide(Index mother, Index target) const {
-    if (!flush.first || flush.met(faces, geometry.table[mother / 4], geometry.table[target / 4]))
-      return false;
-    const Index side[2] = {mother, target};
-    Vec3<Real> x[2], along[2];
+    const Crossed c = crossed(mother, target);
+    return is_past_rim(c) || is_in_seam(c);
+  }
+
+ private:
+  /// Two sides, where they cross.
+  struct Crossed {
+    Index side[2];
+    Vec3<Real> along[2], point[2], n;
+    Real part[2], gap;  // of either side from its start to the point; between the points  [m]
+  };
+  CDEM_HD Crossed crossed(Index mother, Index target) const {
+    Crossed c{.side = {mother, target}, .along = {}, .point = {}, .n = {}, .part = {}, .gap = 0};
+    Vec3<Real> x[2];
     for (Index e = 0; e < 2; ++e) {
-      const ExposedRow& row = geometry.table[side[e] / 4];
-      x[e] = faces.nodes.position(row.corner[side[e] % 4]);
-      along[e] = faces.nodes.position(row.end(side[e] % 4)) - x[e];
+      const ExposedRow& row = geometry.table[c.side[e] / 4];
+      x[e] = faces.nodes.position(row.corner[c.side[e] % 4]);
+      c.along[e] = faces.nodes.position(row.end(c.side[e] % 4)) - x[e];
     }
-    const Vec3<Real> n =
-        edge_normal(along[0], along[1], geometry.normal(target / 4) - geometry.normal(mother / 4));
-    const Crossing<Real> at = cross_edges(x[0], along[0], x[1], along[1], n);
-    const Vec3<Real> point[2] = {x[0] + at.s * along[0], x[1] + at.t * along[1]};
+    c.n = edge_normal(c.along[0], c.along[1],
+                      geometry.normal(target / 4) - geometry.normal(mother / 4));
+    const Crossing<Real> at = cross_edges(x[0], c.along[0], x[1], c.along[1], c.n);
+    c.part[0] = at.s, c.part[1] = at.t, c.gap = at.gap;
+    for (Index e = 0; e < 2; ++e) c.point[e] = x[e] + c.part[e] * c.along[e];
+    return c;
+  }
+  /// Does either edge ride on a face near an end of the other one?
+  CDEM_HD bool is_past_rim(const Crossed& c) const {
+    const Real length = min_of(geometry.length(c.side[0] / 4), geometry.length(c.side[1] / 4)),
+               room = rules.tolerance * length, near = room + abs_of(c.gap) / rules.cone;
     for (Index e = 0; e < 2; ++e) {
-      const Index exposed = side[e] / 4, k = side[e] % 4;
-      const Index other = geometry.table[side[1 - e] / 4].corner[0];
+      const Index other = 1 - e;
+      const Real from_end = min_of(c.part[other], 1 - c.part[other]);
+      const bool is_near =
+          from_end < 0 || from_end * from_end * dot(c.along[other], c.along[other]) < near * near;
+      if (is_near && rides(c.side[e], c.point[e], c.along[e], c.side[other], c.gap, room))
+        return true;
+    }
+    return false;
+  }
+  CDEM_HD bool is_in_seam(const Crossed& c) const {
+    const ExposedRow* const table = geometry.table;
+    if (!flush.first || flush.meet(faces, rules, table[c.side[0] / 4], table[c.side[1] / 4]))
+      return false;
+    for (Index e = 0; e < 2; ++e) {
+      const Index exposed = c.side[e] / 4, k = c.side[e] % 4;
+      const Index other = table[c.side[1 - e] / 4].corner[0];
       const Index at_edge[2] = {exposed_face[exposed], faces.across(exposed, k)};
       for (Index i = 0; i < 2; ++i) {
         const Index f = at_edge[i], own = at_edge[1 - i];
         if (f < 0) continue;
-        if (flush.obstruct(faces, rules, f, point[e], e == 0 ? -n : n, other)) return true;
-        if (own >= 0 && flush.turns_up(faces, rules, f, own, point[e], along[e], other))
+        if (flush.obstruct(faces, rules, f, c.point[e], e == 0 ? -c.n : c.n, other)) return true;
+        if (own >= 0 && flush.turns_up(faces, rules, f, own, c.point[e], c.along[e], other))
           return true;
       }
     }
+    return false;
+  }
+  /// Does an edge touch, at a point, a face beside the other one, or pass it? There it is less
+  /// deep, and no face of its own goes below.
+  CDEM_HD bool rides(Index side, const Vec3<Real>& point, const Vec3<Real>& along, Index other,
+                     Real gap, Real room) const {
+    const auto above = [&](Index face, const Vec3<Real>& n) {
+      return face < 0 || !(dot(n, FlushFaces::away(faces, face, point, along)) < -rules.cone);
+    };
+    const Index own[2] = {exposed_face[side / 4], faces.across(side / 4, side % 4)};
+    const Index across = faces.across(other / 4, other % 4);
+    const Index at_edge[2] = {other / 4, across < 0 ? -1 : faces.face_exposed[across]};
+    const Vec3<Real> one = geometry.normal(other / 4),
+                     two = normal_across(faces, geometry, other / 4, other % 4);
+    const auto touches = [&](const Vec3<Real>& center, const Vec3<Real>& n) {
+      return dot(n, point - center) > max_of(gap, -room) && !(dot(n, one) > coplanar_faces) &&
+             !(dot(n, two) > coplanar_faces) && above(own[0], n) && above(own[1], n);
+    };
+    for (const Index exposed : at_edge)
+      if (exposed >= 0 && BesideRim{faces, geometry}.any(exposed, touches)) return true;
     return false;
   }
 };

@@ -17,6 +17,7 @@ void find_target_faces(const Model& m, State& s, Queue q) {
   for_each_item(q, count, BeginTargets{search.springs});
   for_each_selected(q, count, UpdateHeldTargets{search});
   for_each_selected(q, count, FilterNewTargets{search});
+  for_each_item(q, count, DropPassedTargets{search});
   for_each_item(q, count, ResolveTargets{search});
   for_each_item(q, count, HoldAtRims{search});
 }
@@ -53,8 +54,7 @@ void find_target_edges(const Model& m, State& s, Queue q) {
                                 .pairs = pairs,
                                 .rules = m.rules});
   for_each_selected(q, pair_count, edge_search(m, s));
-  if (m.flush_face.size() > 0)
-    for_each_item(q, pair_count, DropHiddenEdges{hidden_edges(m, s), pairs});
+  for_each_item(q, pair_count, DropHiddenEdges{hidden_edges(m, s), pairs});
   list_rows(q, pair_count, EdgeWays::count * pair_count, count, FoundEdges{pairs}, s.edges.first,
             s.edges.found);
   make_room_for_edges(s);

@@ -34,7 +34,7 @@ struct ResolveTargetEdges {
   }
 };
 
-/// Drop contacts that would begin in the seams of blocks that lie flush.
+/// Drop contacts that would begin beyond a sharp rim, or in the seams of blocks that lie flush.
 struct DropHiddenEdges {
   HiddenEdges hidden;
   EdgePairs pairs;

@@ -28,6 +28,36 @@ struct FaceSearch {
     return T(rules.approach_steps * faces.dt) *
            abs_of(dot(normal, faces.nodes.velocity(node) - mean));
   }
+
+  CDEM_HD bool opposes(Index m, Index t) const {
+    return dot(geometry.normal(m), geometry.normal(t)) < -rules.opposing;
+  }
+  CDEM_HD Real smaller_length(Index m, Index t) const {
+    return min_of(geometry.length(m), geometry.length(t));
+  }
+  CDEM_HD Real plane_gap(const Vec3<Real>& v, Index t) const {
+    return dot(geometry.normal(t), v - geometry.center(t));
+  }
+  /// A warped face may reach above its mean plane; a plane one does not.
+  CDEM_HD Real above(Index t) const {
+    return geometry.is_triangle(t) ? 0.0 : 0.5 * geometry.length(t);
+  }
+  /// Cheap part of the inside test: P lies within reach of the face's centre.
+  CDEM_HD bool beside(const Vec3<Real>& p, Index t, Real tolerance) const {
+    const Vec3<Real> n = geometry.normal(t), arm = p - geometry.center(t);
+    const Real up = dot(n, arm), reach = geometry.table[t].reach + tolerance;
+    return dot(arm, arm) - up * up < reach * reach;
+  }
+  /// No edge that leaves v, or a bonded node there, goes below the plane through v.
+  CDEM_HD bool deepest(Index node, const Vec3<Real>& v, const Vec3<Real>& n) const {
+    const Index point = faces.bonded_node[node];
+    for (Index r = faces.edge_star_first[point]; r < faces.edge_star_first[point + 1]; ++r) {
+      const Vec3<Real> d = faces.nodes.position(faces.edge_star[r]) - v;
+      const Real down = -dot(d, n);
+      if (down > 0 && down * down > rules.cone * rules.cone * dot(d, d)) return false;
+    }
+    return true;
+  }
 };
 
 /// Begin the search of a step: the target becomes the old target.
@@ -193,6 +223,90 @@ struct FilterNewTargets : FaceSearch {
   }
 };
 
+/// Take back, of the faces that semi-springs may begin to touch, or touch next, those that their
+/// vertex passes at a rim or cannot reach in a seam.
+struct DropPassedTargets : FaceSearch {
+  CDEM_HD void operator()(One m) const {
+    for (Index slot = 4 * m.i; slot < 4 * m.i + 4; ++slot)
+      if (springs.unresolved[slot]) drop(m.i, slot);
+  }
+  /// Does vertex k of exposed face m pass t, or does a seam hide one from the other?
+  CDEM_HD bool passes(Index m, Index k, Index t) const {
+    const Index node = faces.vertex(exposed_face[m], k);
+    const Vec3<Real> v = faces.nodes.position(node);
+    const Vertex s{node, v, v + rules.indentation * (geometry.center(m) - v)};
+    const Real near = above(t), length = smaller_length(m, t), plane = plane_gap(v, t);
+    if (!opposes(m, t) || plane > near + rules.lifted || plane < -rules.depth * length - near ||
+        !beside(s.p, t, rules.tolerance * length))
+      return false;  // it is no target
+    const Real gap = project(faces.shape(exposed_face[t]), v, geometry.normal(t)).gap;
+    return hidden(m, t, gap, s) || rides(m, t, gap, s);
+  }
+
+ private:
+  static constexpr Index most_around = 32;  // faces at a vertex that are looked at
+
+  /// A vertex and its indented point.
+  struct Vertex {
+    Index node;
+    Vec3<Real> v, p;
+  };
+
+  CDEM_HD void drop(Index m, Index slot) const {
+    const bool free = springs.target_before[slot] < 0;
+    for (Index c = candidates.first[slot]; c < candidates.first[slot + 1]; ++c)
+      candidates.may_begin[c] =
+          (!free || candidates.may_begin[c]) && !passes(m, slot - 4 * m, candidates.other[c]);
+  }
+  /// Does a vertex touch a face beside t, or pass it? It is hardly behind that, and less deep than
+  /// behind t or opposed to m more.
+  CDEM_HD bool rides(Index m, Index t, Real gap, const Vertex& s) const {
+    const Vec3<Real> mother = geometry.normal(m);
+    const Real opposed = dot(mother, geometry.normal(t)),
+               room = rules.tolerance * smaller_length(m, t);
+    return BesideRim{faces, geometry}.any(t, [&](const Vec3<Real>& center, const Vec3<Real>& n) {
+      const Real up = dot(n, s.v - center);
+      return up > -room && (up > gap || dot(mother, n) < opposed) && deepest(s.node, s.v, n);
+    });
+  }
+  /// Is a contact of a vertex of exposed face m with t inside the surface that one of their blocks
+  /// makes with others that lie flush?
+  CDEM_HD bool hidden(Index m, Index t, Real gap, const Vertex& s) const {
+    if (!flush.first || flush.meet(faces, rules, geometry.table[m], geometry.table[t]))
+      return false;
+    const Index face = exposed_face[m], target = exposed_face[t];
+    const Vec3<Real> n = geometry.normal(t);
+    if (flush.cover(faces, rules, target, s.p - plane_gap(s.p, t) * n, s.node)) return true;
+    if (!flush.at_node[s.node]) return false;
+    const Index spared = faces.vertex(target, 0);
+    Index f = face;
+    for (Index turn = 0; turn < most_around; ++turn) {
+      if (flush.obstruct(faces, rules, f, s.v, -n, spared)) return true;
+      Index side;
+      const Index next = flush.next_around(faces, f, s.node, side);
+      if (next < 0) return false;
+      const Index end = faces.vertex(f, side + 1 == faces.vertex_count(f) ? 0 : side + 1);
+      const Vec3<Real> along = faces.nodes.position(end) - s.v;
+      if (is_in_foot(f, next, along, t, gap, s) || is_in_foot(next, f, along, t, gap, s))
+        return true;
+      if ((f = next) == face) return false;
+    }
+    return false;
+  }
+  /// Does the surface turn up at a vertex, from a face of its block to that of a body that covers
+  /// another one? Of the corners in such a foot the one that is less deep touches.
+  CDEM_HD bool is_in_foot(Index covered, Index own, const Vec3<Real>& along, Index t, Real gap,
+                          const Vertex& s) const {
+    const Index target = exposed_face[t];
+    if (!flush.turns_up(faces, rules, covered, own, s.v, along, faces.vertex(target, 0)))
+      return false;
+    const FaceShape<Real> shape = faces.shape(own), other = faces.shape(target);
+    for (Index j = 0; j < other.count(); ++j)
+      if (!(dot(shape.normal(), other.x[j] - shape.center()) > gap)) return false;
+    return true;
+  }
+};
+
 /// Choose the target faces of the semi-springs of one exposed face.
 ///
 /// The indented point P = v + alpha (C - v) decides which face is the target; the true vertex v
@@ -217,8 +331,7 @@ struct ResolveTargets : FaceSearch {
   CDEM_HD void resolve(Index m, Index k) const {
     const Index slot = 4 * m + k;
     FaceList listed = listed_for(slot);
-    if (springs.target_before[slot] < 0)
-      listed.may_begin = candidates.may_begin + candidates.first[slot];
+    listed.may_begin = candidates.may_begin + candidates.first[slot];
     springs.target[slot] = choose(m, k, listed, springs.lost + slot);
   }
 
@@ -246,7 +359,7 @@ struct ResolveTargets : FaceSearch {
       const bool penetration = s.free && plane < -entry && encloses(t, s, plane);
       const Real limit = penetration ? deepest_inside(t, length) : entry;
       const Real gap = qualify(m, s.node, s.v, s.p, t, {s.lifted, limit, penetration});
-      if (is_better(m, k, t, gap, s)) {
+      if (is_better(gap, s)) {
         s.best = t;
         s.gap = gap;
       }
@@ -257,6 +370,8 @@ struct ResolveTargets : FaceSearch {
  private:
   static constexpr Real none = 1e300;          // a gap that is no contact
   static constexpr Real surely_shallow = 0.9;  // part of the entry that needs no look at velocities
+  static constexpr Real rim_part = 0.1;        // of its depth: so deep a vertex lies on a face
+  static constexpr Index most_around = 32;     // faces at a vertex that are looked at
   static constexpr Real turn = 1.5;  // a loaded spring enters its next face by so much of its depth
 
   /// One vertex that seeks its target.
@@ -304,15 +419,6 @@ struct ResolveTargets : FaceSearch {
     if (loaded && is_below(s.p, current, old_gap, depth)) *lost = 1;
     return s;
   }
-  CDEM_HD bool opposes(Index m, Index t) const {
-    return dot(geometry.normal(m), geometry.normal(t)) < -rules.opposing;
-  }
-  CDEM_HD Real smaller_length(Index m, Index t) const {
-    return min_of(geometry.length(m), geometry.length(t));
-  }
-  CDEM_HD Real plane_gap(const Vec3<Real>& v, Index t) const {
-    return dot(geometry.normal(t), v - geometry.center(t));
-  }
   /// Down to this depth a point behind a face is not yet beyond the other side of its block.
   CDEM_HD Real deepest_inside(Index t, Real length) const {
     return min_of(rules.depth * length, 0.5 * faces.face_height[exposed_face[t]]);
@@ -334,35 +440,10 @@ struct ResolveTargets : FaceSearch {
     }
     return true;
   }
-  /// Does vertex k of exposed face m, at this gap to t, make a contact, and the best one yet?
-  CDEM_HD bool is_better(Index m, Index k, Index t, Real gap, const Seeker& s) const {
-    return gap < none && gap > s.gap && !hidden(m, k, t, s);
-  }
-  /// Is a contact of vertex k of exposed face m with t inside the surface that one of their blocks
-  /// makes with others that lie flush?
-  CDEM_HD bool hidden(Index m, Index k, Index t, const Seeker& s) const {
-    if (!flush.first || flush.met(faces, geometry.table[m], geometry.table[t])) return false;
-    const Index face = exposed_face[m], target = exposed_face[t];
-    const Vec3<Real> n = geometry.normal(t);
-    if (flush.cover(faces, rules, target, s.p - plane_gap(s.p, t) * n, s.node)) return true;
-    const Index last = (k == 0 ? faces.vertex_count(face) : k) - 1;
-    const Index at_vertex[3] = {face, faces.across(m, k), faces.across(m, last)};
-    for (const Index f : at_vertex)
-      if (f >= 0 && flush.obstruct(faces, rules, f, s.v, -n, faces.vertex(target, 0))) return true;
-    return false;
-  }
+  /// Is a contact at this gap the best one yet?
+  CDEM_HD static bool is_better(Real gap, const Seeker& s) { return gap < none && gap > s.gap; }
   CDEM_HD bool is_of_body(Index node, Index t) const {
     return faces.body[node] == faces.body[faces.vertex(exposed_face[t], 0)];
-  }
-  /// A warped face may reach above its mean plane; a plane one does not.
-  CDEM_HD Real above(Index t) const {
-    return geometry.is_triangle(t) ? 0.0 : 0.5 * geometry.length(t);
-  }
-  /// Cheap part of the inside test: P lies within reach of the face's centre.
-  CDEM_HD bool beside(const Vec3<Real>& p, Index t, Real tolerance) const {
-    const Vec3<Real> n = geometry.normal(t), arm = p - geometry.center(t);
-    const Real up = dot(n, arm), reach = geometry.table[t].reach + tolerance;
-    return dot(arm, arm) - up * up < reach * reach;
   }
   CDEM_HD bool is_below(const Vec3<Real>& p, Index t, Real gap, Real depth) const {
     return gap < -depth && faces.shape(exposed_face[t]).inside(p, geometry.normal(t), 0.0);
@@ -415,16 +496,6 @@ struct ResolveTargets : FaceSearch {
       if (faces.bonded_node[faces.vertex(exposed_face[t], j)] == faces.bonded_node[node])
         return none;
     return terms.inside || deepest(node, v, n) ? gap : none;
-  }
-  /// No edge that leaves v, or a bonded node there, goes below the plane through v.
-  CDEM_HD bool deepest(Index node, const Vec3<Real>& v, const Vec3<Real>& n) const {
-    const Index point = faces.bonded_node[node];
-    for (Index r = faces.edge_star_first[point]; r < faces.edge_star_first[point + 1]; ++r) {
-      const Vec3<Real> d = faces.nodes.position(faces.edge_star[r]) - v;
-      const Real down = -dot(d, n);
-      if (down > 0 && down * down > rules.cone * rules.cone * dot(d, d)) return false;
-    }
-    return true;
   }
 };
 

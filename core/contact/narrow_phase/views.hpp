@@ -56,7 +56,10 @@ inline EdgesBefore edges_before(const State& s) {
 
 inline FlushFaces flush_faces(const Model& m) {
   const Index* first = m.flush_face.size() > 0 ? m.flush_first.data() : nullptr;
-  return {.first = first, .mate = m.flush_face.data(), .edge_faces = m.edge_faces.data()};
+  return {.first = first,
+          .mate = m.flush_face.data(),
+          .edge_faces = m.edge_faces.data(),
+          .at_node = m.node_flush.data()};
 }
 
 inline FaceSearch face_search(const Model& m, State& s) {

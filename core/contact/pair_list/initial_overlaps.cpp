@@ -1,6 +1,8 @@
 // initial_overlaps.cpp - see initial_overlaps.hpp.
 #include "core/contact/pair_list/initial_overlaps.hpp"
 
+#include <vector>
+
 #include "core/contact/narrow_phase/exposed_faces.hpp"
 #include "core/contact/narrow_phase/views.hpp"
 #include "core/contact/pair_list/inner_list.hpp"
@@ -13,7 +15,12 @@ void adopt_vertex(const ResolveTargets& search, Index x, Index k, InitialOverlap
   const Index mother = search.exposed_face[x];
   Index& t = springs.target[4 * x + k];
   springs.target_before[4 * x + k] = t;
-  t = search.choose(x, k, search.listed_for(4 * x + k), &springs.lost[4 * x + k]);
+  const DropPassedTargets passed{search};
+  FaceList listed = search.listed_for(4 * x + k);
+  std::vector<Flag> may_begin(listed.count);
+  for (Index c = 0; c < listed.count; ++c) may_begin[c] = !passed.passes(x, k, listed.other[c]);
+  listed.may_begin = may_begin.data();
+  t = search.choose(x, k, listed, &springs.lost[4 * x + k]);
   if (t < 0) return;
   const FaceShape<Real> shape = search.faces.shape(search.exposed_face[t]);
   const Vec3<Real> v = search.faces.nodes.position(search.faces.vertex(mother, k));

@@ -9,10 +9,10 @@ from numpy.typing import NDArray
 
 from cdem.mesh import element_shapes
 from cdem.mesh.arrays import in_pieces, lengths, same_everywhere
-from cdem.mesh.overlap import flush_faces
 from cdem.mesh.topology import Topology
 from cdem.model.faces import face_areas, face_heights
 from cdem.model.flat_arrays import Assembly, Floats, Ints, Properties, ragged, table
+from cdem.model.flush import flush_rows
 from cdem.model.mass_scaling import OFFER, Scaling
 from cdem.model.masses import Geometry, node_masses
 from cdem.model.module import Module
@@ -142,7 +142,10 @@ def _faces(t: Topology, p: Properties, out: Assembly) -> None:
     area, length, reach = in_pieces(geometry, t.face_nodes).T.copy()
     young = p.young_modulus[t.face_group]
     height = face_heights(t, np.concatenate(list(out.element_volume.values())), area)
-    flush_first, flush = flush_faces(t, ~p.paired)  # bonded blocks have one surface
+    flush_first, flush = flush_rows(t, p.flush)
+    beside_flush = np.zeros(len(t.node_position), np.int8)
+    of_flush = t.face_nodes[np.diff(flush_first) > 0]
+    beside_flush[of_flush[of_flush >= 0]] = 1
     out.arrays |= {
         "face.nodes": t.face_nodes.ravel(),
         "face.edges": t.face_edges.ravel(),
@@ -158,6 +161,7 @@ def _faces(t: Topology, p: Properties, out: Assembly) -> None:
         "face.radius": _radius(t, p, out),
         "flush.first": flush_first,
         "flush.face": flush,
+        "node.flush": beside_flush,
         "edge.nodes": t.edge_nodes.ravel(),
         "edge.faces": t.edge_faces.ravel(),
         "edge_star.first": t.node_ring_first,

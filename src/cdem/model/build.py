@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -251,8 +251,7 @@ def _assemble(
 ) -> Assembly:
     """Arrays of the core, with the present supports and loads of the case.
 
-    Mass scaling is as given, or follows from the case. Elements have no stress when
-    their nodes are at `born`.
+    Mass scaling is as given, or follows from the case. Elements at `born` have no stress.
     """
     names = topology.group_names
     entries = interface_entries(case, laws, names, topology.node_position)
@@ -267,6 +266,7 @@ def _assemble(
         law_parameters=np.array([_law_row(m) for m in materials]),
         interface_of=np.maximum(interface_of, 0),
         paired=paired,
+        flush=~_beside_cells(case, names, paired),
         strength_factors=[strength_factors_of(law) for law in laws],
         breaks=that_may_break(case),
         stiffness=np.array([bond_row(law) for law in laws]).reshape(-1, 4),
@@ -297,6 +297,18 @@ def _assemble(
     for module in modules.values():
         module.add_arrays(given)
     return parts
+
+
+def _beside_cells(case: Case, names: Sequence[str], paired: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Whether pairs of these kinds of faces have cells of a split group on a side, (kinds, kinds).
+
+    Blocks hide the faces that they share from others, whether a bond holds them or not. Cells of a
+    group do not: they have one surface while they are bonded, and rubble would ask at each contact
+    and lose the bed where the cells are in one another.
+    """
+    split = np.array([case.model.split.get(name) == "elements" for name in names])
+    cells = np.resize(split, len(paired))  # faces of joints follow, by group
+    return paired & (cells[:, None] | cells)
 
 
 def _made_up(t: Topology, made_up: dict[str, Compensation]) -> tuple[Floats, Floats]:

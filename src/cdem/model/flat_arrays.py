@@ -31,6 +31,8 @@ class Properties:
             `Topology.face_kind`), shape (kinds, kinds).
         paired: Whether faces with it that touch at the start are pairs: if it has strength, or with
             `pairs_loose_joints`, the same shape.
+        flush: Whether faces of these kinds that begin flush hide each other from third blocks, the
+            same shape.
         breaks: Whether bonds of it may break, see `that_may_break`, shape (interfaces,).
         strength_factors: Function from faces of pairs, shape (pairs, 2), to factors on their
             strength, by
@@ -64,6 +66,7 @@ class Properties:
     law_parameters: Floats
     interface_of: Ints
     paired: NDArray[np.bool_]
+    flush: NDArray[np.bool_]
     strength_factors: Sequence[Callable[[Ints], Floats] | None]
     breaks: NDArray[np.bool_]
     stiffness: Floats

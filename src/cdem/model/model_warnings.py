@@ -11,6 +11,7 @@ from cdem.case.interface_schema import Interface, InterfacePair
 from cdem.case.laws import INTERFACE_LAWS
 from cdem.case.types import AUTO, Stiffness
 from cdem.mesh.arrays import lengths
+from cdem.mesh.overlap import flush_faces
 from cdem.mesh.topology import Topology
 from cdem.model.build import Build
 from cdem.model.interfaces import interfaces_of, name_of
@@ -164,8 +165,10 @@ def unlike_sides(build: Build) -> Iterator[str]:
     """
     t, a = build.topology, build.arrays
     laws, _ = interfaces_of(build.case, build.group_names)
-    coarse = np.repeat(np.arange(len(t.face_nodes)), np.diff(a["flush.first"]))
-    fine = a["flush.face"]
+    if not any(not k.relative for law in laws for k in _given_stiffness(law)):
+        return
+    first, fine = flush_faces(t, ~build.paired)
+    coarse = np.repeat(np.arange(len(t.face_nodes)), np.diff(first))
     share = a["face.area"] / (t.face_nodes >= 0).sum(axis=1)
     ratio = share[fine] / share[coarse]
     coarse, fine, ratio = (x[ratio < 1] for x in (coarse, fine, ratio))

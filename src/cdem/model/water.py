@@ -14,16 +14,14 @@ from cdem.case.schema import Material
 from cdem.errors import CaseError
 from cdem.mesh import element_shapes
 from cdem.mesh.topology import Topology
-from cdem.model.faces import face_normals
-from cdem.model.flat_arrays import Assembly, Floats, ragged, table
+from cdem.model.flat_arrays import Assembly, Floats, table
+from cdem.model.flush import flush_beside
 from cdem.model.module import Built, Module, Parts
 from cdem.model.water_fields import WaterTables
 from cdem.model.wetted import water_text, wetted
 
 OPEN = 0.05
 """Joints keep their water up to this opening, relative to the length of a face."""
-FLUSH = 0.9
-"""Cosine between the normals of faces of one wall of a joint."""
 KINDS = ("triangles", "quads", "overlaps")
 """Kinds of pairs, in the order of the core."""
 
@@ -202,36 +200,12 @@ def _mates(
     both = np.concatenate([*pairs, touching]).astype(np.intp)
     code = np.concatenate([*codes, np.full(len(touching), -1)]).astype(np.intp)
     face, mate, code = both.T.ravel(), both[:, ::-1].T.ravel(), np.tile(code, 2)
-    beside = _beside(t, face, mate)
+    beside = flush_beside(t, face, mate)
     return (
         np.concatenate([face, beside[0]]),
         np.concatenate([mate, beside[1]]),
         np.concatenate([code, np.full(len(beside[0]), -1)]),
     )
-
-
-def _beside(
-    t: Topology, face: NDArray[np.intp], mate: NDArray[np.intp]
-) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
-    """Faces with the flush neighbours of their mates, which they reach when the joint slips."""
-    walls = np.unique(face)
-    nodes = t.face_nodes[walls]
-    used = nodes >= 0
-    owner = np.repeat(walls, used.sum(axis=1))
-    first, at_node = ragged(nodes[used].astype(np.int64), owner, len(t.node_position))
-    ends = t.face_nodes[mate]
-    of, corner = np.nonzero(ends >= 0)
-    node = ends[of, corner]
-    count = np.diff(first)[node]
-    place = np.repeat(np.cumsum(count) - count, count)
-    beside = at_node[np.repeat(first[:-1][node], count) + np.arange(count.sum()) - place]
-    of = np.repeat(of, count)
-    normal = face_normals(t.node_position, t.face_nodes)
-    flush = (normal[beside] * normal[mate[of]]).sum(axis=1) > FLUSH
-    found = np.unique(np.stack([face[of[flush]], beside[flush]], axis=1), axis=0)
-    faces = len(t.face_nodes)
-    new = ~np.isin(found @ [faces, 1], face * faces + mate)
-    return found[new, 0], found[new, 1]
 
 
 def _wet_set(name: str, corners: int, faces: _Faces, tables: WaterTables, parts: Parts) -> None:

@@ -392,6 +392,7 @@ class _Warm:
         steps = sim.step_count - before
         self.wait = self.wait or patience(sim) or max(LEAST_STEPS, steps)
         self.tell(self._before_the_search(stage, verdict, steps))
+        sim.reference = sim.fields["position"].copy()  # displacements count from here
         return stage
 
     def _before_the_search(self, stage: StageState, verdict: Verdict, steps: int) -> list[str]:

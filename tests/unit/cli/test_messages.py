@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import shlex
 import signal
 import subprocess
 import sys
@@ -14,7 +15,7 @@ from shared.cases import ENDLESS
 from cdem.cli.messages import Messages
 from cdem.cli.options import STOPPED
 
-RUN = f"{sys.executable} -m cdem run cube.yaml"
+RUN = f"{shlex.quote(sys.executable)} -m cdem run cube.yaml"
 
 
 class Broken(io.StringIO):
@@ -45,7 +46,7 @@ def test_a_run_ends_well_without_its_messages(cube_folder, stderr):
 
 def test_a_run_whose_reader_left_still_stops_with_a_checkpoint(cube_folder):
     (cube_folder / "cube.yaml").write_text(ENDLESS)
-    run = subprocess.Popen(RUN.split(), stderr=subprocess.PIPE)
+    run = subprocess.Popen(shlex.split(RUN), stderr=subprocess.PIPE)
     run.stderr.close()
     for _ in range(200):
         if (cube_folder / "cube.results/histories.csv").exists():

@@ -70,3 +70,30 @@ def test_tets_that_flow_beside_others_have_a_nodal_mean():
         text = "soft: 6 elements of law mohr-coulomb"
         assert (f"  {text}, 6 with nodal mean\n" in sim.audit.text()) == bool(expected)
         assert f"  {text}" in sim.audit.text()
+
+
+def test_cells_of_a_split_group_hide_nothing_of_each_other_or_their_bed():
+    """Where they are in one another, a cell would lose the bed that its neighbour covers."""
+
+    def flush(split):
+        """Pairs of flush faces by group, once each."""
+        sim = simulate(
+            [
+                {"group": "rock", "box": {"size": [2, 1, 1], "divisions": [2, 1, 1]}},
+                {"group": "bed", "box": {"size": [2, 1, 1]}, "translate": [0, 0, -1]},
+                {"group": "wall", "box": {"size": [1, 1, 1]}, "translate": [2, 0, 0.5]},
+            ],
+            {"rock": {}, "bed": {}, "wall": {}},
+            interfaces={"default": {"friction_angle": 30, "cohesion": "1 MPa"}},
+            model={"split": {"rock": split}},
+        )
+        t, first = sim.build.topology, sim.core.model()["flush.first"]
+        own = np.repeat(np.arange(len(first) - 1), np.diff(first))
+        names = np.array(t.group_names)[t.face_group]
+        return {
+            tuple(sorted([names[a], names[b]]))
+            for a, b in zip(own, sim.core.model()["flush.face"], strict=True)
+        }
+
+    assert flush("elements") == set()
+    assert flush("connected") == {("bed", "rock"), ("rock", "wall")}

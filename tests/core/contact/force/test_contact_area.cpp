@@ -49,7 +49,7 @@ struct Touching : Scene {
       ContactSpring<Real> spring = laws.spring(geometry, Index(0), m, t);
       spring.area *= part;
       const Real before = spring.n();
-      laws.take_true_area<InterfaceLaws>(spring, Index(0), m, t, pressed);
+      laws.take_true_area<InterfaceLaws>(spring, geometry, Index(0), m, t, pressed);
       CHECK(relative_error(spring.n(), before) < 1e-14);
       CHECK(spring.has_area == 1);
       if (!pressed) return;
@@ -86,7 +86,8 @@ TEST_CASE("models whose laws ask for no area find none, and contacts keep their 
   CHECK(blocks.state.contact_areas.per_stiffness.size() == 0);
   ContactSpring<Real> spring{.area = 0.3, .stiffness = JointStiffness<Real>::of(1e9, 2e9)};
   contact_laws(blocks.model, blocks.state)
-      .take_true_area<InterfaceLaws>(spring, Index(0), Index(0), Index(1), true);
+      .take_true_area<InterfaceLaws>(spring, face_geometry(blocks.state), Index(0), Index(0),
+                                     Index(1), true);
   CHECK(spring.area == 0.3);
   CHECK(spring.has_area == 0);
 }
@@ -95,7 +96,8 @@ TEST_CASE("a contact that just began has next to no area") {
   Touching blocks({}, true);
   const ContactLaws laws = contact_laws(blocks.model, blocks.state);
   ContactSpring<Real> spring{.area = 0.3, .stiffness = JointStiffness<Real>::of(1e9, 2e9)};
-  laws.take_true_area<InterfaceLaws>(spring, Index(0), Index(0), Index(1), false);
+  laws.take_true_area<InterfaceLaws>(spring, face_geometry(blocks.state), Index(0), Index(0),
+                                     Index(1), false);
   CHECK(relative_error(spring.area, 0.3e-3) < 1e-14);
   CHECK(relative_error(spring.n(), 0.3e9) < 1e-14);
   CHECK(relative_error(spring.s(), 0.6e9) < 1e-14);
