@@ -124,6 +124,22 @@ def portal():
     return scene([*piers, box((2.6, 0.5, 0.4), (0, 0, 2.0005)), bed()])
 
 
+def scree(across, down, layers, slope=28, seed=3):
+    """Stones of six to ten corners, 0.3 to 0.5 m, one above another on a fixed slope."""
+    rng, stones = np.random.default_rng(seed), []
+    c, s = np.cos(np.radians(slope)), np.sin(np.radians(slope))
+    tilt = np.array([[c, 0, s], [0, 1, 0], [-s, 0, c]])
+    for x, y, z in np.ndindex(down, across, layers):
+        ways = rng.normal(size=(rng.integers(6, 11), 3))
+        ways /= np.linalg.norm(ways, axis=1)[:, None]
+        centre = 0.5 * np.array([x, y, z]) + 0.26 + 0.02 * rng.uniform(-1, 1, 3)
+        corners = (centre + rng.uniform(0.16, 0.24) * ways) @ tilt.T
+        stones.append({"group": "a", "polyhedron": {"vertices": np.round(corners, 7).tolist()}})
+    plate = [(x, y, z) for z in (-0.5, 0) for x, y in ((-1, -1), (9, -1), (9, 4), (-1, 4))]
+    floor = np.round(np.array(plate) @ tilt.T, 7).tolist()
+    return scene([*stones, {"group": "bed", "polyhedron": {"vertices": floor}}], friction=38)
+
+
 def scenes() -> dict[str, Callable[[], Scene]]:
     """All scenes by their names."""
     found: dict[str, Callable[[], Scene]] = {}
@@ -145,6 +161,7 @@ def scenes() -> dict[str, Callable[[], Scene]]:
     add("the same, friction 20", wall, 6, 8, rough=1e-3, friction=20, seed=4)
     add("rough wall 10 x 10, 0.5 mm", wall, 10, 10, rough=5e-4)
     add("rough wall 20 x 10, 1 mm", wall, 20, 10, rough=1e-3)
+    add("rough wall 25 x 20, 1 mm", wall, 25, 20, rough=1e-3)
     add("wall with a door and lintel", wall, 10, 10, **LINTEL)
     add("the same, rough by 0.5 mm", wall, 10, 10, rough=5e-4, **LINTEL)
     add("rough wall with two windows", wall, 16, 10, rough=1e-3, **WINDOWS)
@@ -160,6 +177,7 @@ def scenes() -> dict[str, Callable[[], Scene]]:
     add("soft rough wall 6 x 4, 0.001", wall, 6, 4, soft=1e-3, rough=5e-4)
     add("stack of 5 of tets, gaps of 1 mm", stack, 5, gap=1e-3, divisions=(2, 2, 2), shape="tet4")
     add("rough wall 6 x 4 of tets", wall, 6, 4, rough=5e-4, divisions=(2, 1, 1), shape="tet4")
+    add("scree of 96 stones on 28 degrees", scree, 4, 8, 3)
     many = (24, 8, 1)
     add("wall 6 x 8 on 192 faces", wall, 6, 8, beds=many)
     add("the same, rough", wall, 6, 8, beds=many, rough=5e-4)
