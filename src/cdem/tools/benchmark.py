@@ -49,6 +49,17 @@ MIXED = 15
 PHASES = ("refresh", "search", "contact", "element", "node")
 
 
+@cache
+def _processor() -> str:
+    try:
+        for line in Path("/proc/cpuinfo").read_text().splitlines():
+            if line.startswith("model name"):
+                return line.split(":", 1)[1].strip()
+    except OSError:
+        pass
+    return platform.processor() or platform.machine()
+
+
 @dataclass
 class Row:
     """One measurement.
@@ -62,6 +73,8 @@ class Row:
         most: Rate of the fastest run.
         threads: Threads of the core.
         more: Other figures by name.
+        kernels: Set of kernels that ran.
+        processor: Name of the processor.
     """
 
     name: str
@@ -72,6 +85,8 @@ class Row:
     most: float
     threads: int
     more: dict[str, float] = field(default_factory=dict)
+    kernels: str = native_name
+    processor: str = field(default_factory=_processor)
 
     def text(self) -> str:
         """One line."""
@@ -169,6 +184,7 @@ def _cost(
     row = Row(f"{name}, {'plain' if plain else 'defaults'}{scaled}", f"{sim.audit.counts['elements']:,}",
               "CPU s/simulated s", statistics.median(costs), min(costs), max(costs), 1)  # fmt: skip
     row.more["step [us]"] = 1e6 * float(sim.core.scalars()["dt"])
+    row.more |= _conditions(sim)
     if error:
         row.more["error of E [%]"] = 100 * modulus_error(plain, irregular="mesh" in case["model"])
     return row
@@ -312,7 +328,19 @@ def _time(
     row.more["CPU [us/step]"] = 1e6 * statistics.median(cpus)
     for phase, part in zip(PHASES, spent / spent.sum(), strict=True):
         row.more[f"{phase} [%]"] = 100 * part
+    row.more |= _conditions(sim)
     return row
+
+
+def _conditions(sim: Simulation) -> dict[str, float]:
+    """Damping of a run, which sets its step, and its closing error of energy."""
+    damping = sim.case.stages[-1].damping
+    assert damping.contact is not None  # the case has filled it in
+    return {
+        "damping, contact": damping.contact,
+        "damping, stiffness": damping.stiffness,
+        "energy error [%]": 100 * sim.energies["error"],
+    }
 
 
 def _steps_for(step: Callable[[int], None]) -> int:
@@ -331,13 +359,3 @@ def _short(value: float) -> str:
         if abs(value) >= scale:
             return f"{value / scale:.3g} {sign}"
     return f"{value:.3g}"
-
-
-def _processor() -> str:
-    try:
-        for line in Path("/proc/cpuinfo").read_text().splitlines():
-            if line.startswith("model name"):
-                return line.split(":", 1)[1].strip()
-    except OSError:
-        pass
-    return platform.processor() or platform.machine()

@@ -182,7 +182,6 @@ def rubble(m: int, speed: float = 1.0) -> dict[str, Any]:
     )
     case["groups"]["plate"] = {"material": "rock", "fix": ["x", "y", "z"]}
     case["loads"] = {"gravity": [0, 0, -9.81]}
-    case["stages"][0]["damping"] = {"contact": 0.2, "stiffness": 0.1}
     return case
 
 
@@ -203,6 +202,5 @@ def wall(rows: int) -> dict[str, Any]:
                    "floor": {"material": "rock", "fix": ["x", "y", "z"]}},
         "interfaces": {"default": {"friction_angle": 30}},
         "loads": {"gravity": [0, 0, -9.81]},
-        "stages": [{"name": "rest", "mode": "dynamic", "duration": 1e3,
-                    "damping": {"contact": 0.2, "stiffness": 0.1}}],
+        "stages": [{"name": "rest", "mode": "dynamic", "duration": 1e3}],
     }  # fmt: skip

@@ -26,6 +26,8 @@ def test_benchmark_rows_say_what_was_measured(monkeypatch):
             pytest.approx(100)
         )
         assert row.name in row.text()
+        assert row.kernels and row.processor and abs(row.more["energy error [%]"]) < 5
+    assert rubble.more["damping, contact"] == 0.1 and rubble.more["damping, stiffness"] == 0
     assert search.rate > rubble.rate
     assert search.more["lists [us per spring and refresh]"] > 0
     limits = benchmark.machine(2)
