@@ -132,9 +132,9 @@ def build(*commands: Sequence[str]) -> None:
             raise Stale("does not build:\n" + (done.stdout + done.stderr)[-3000:])
 
 
-def is_in_core(mutant: Mutant) -> bool:
+def is_compiled(mutant: Mutant) -> bool:
     """Is it planted in C++?"""
-    return mutant.file.startswith("core/")
+    return mutant.file.startswith(("core/", "bindings/"))
 
 
 def is_core_test(test: str) -> bool:
@@ -172,7 +172,7 @@ def failed(command: Sequence[str], limit: float) -> str:
 def fails_suite(mutant: Mutant) -> str:
     """The first test of the whole quick suite that fails, or nothing."""
     test = ""
-    if is_in_core(mutant):
+    if is_compiled(mutant):
         build((*MODULE, "--tests"))
         test = failed(CORE_TESTS, LIMIT_SUITE)
     test = test or failed((*PYTEST, *SUITE), LIMIT_SUITE)
@@ -197,7 +197,7 @@ def try_mutant(mutant: Mutant) -> str:
     try:
         if is_core_test(mutant.test):
             build((*NINJA, "core_tests"))
-        elif is_in_core(mutant):
+        elif is_compiled(mutant):
             build(MODULE)
         if test := failed(command_of(mutant.test), LIMIT):
             return test
