@@ -295,11 +295,11 @@ void bind_run(nb::class_<Core>& core) {
            "check_interval"_a = 20, "relaxation"_a = "none")
       .def(
           "solve_for_rest",
-          [](Core& c, Real limit) {
-            const RestFound found = solve_for_rest(c.model, c.state, limit);
+          [](Core& c, Real limit, int most_iterations) {
+            const RestFound found = solve_for_rest(c.model, c.state, limit, most_iterations);
             return std::make_tuple(found.rounds, found.iterations, found.before, found.after);
           },
-          "unbalance_limit"_a)
+          "unbalance_limit"_a, "most_iterations"_a = 200)
       .def("take_out", &take_nodes<take_out>, "leaves"_a)
       .def("excavate", &take_nodes<excavate>, "leaves"_a)
       .def("bring_in", &bring_nodes_in, "comes"_a, "position"_a, "arrays"_a, "bonded"_a)

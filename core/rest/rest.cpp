@@ -23,7 +23,6 @@ constexpr int most_rounds = 12;
 // Times the unbalance of the start: beyond it blocks have run into others. The first round of a
 // slender beam turns its end without shortening it, so it comes out stretched: 30 are too few.
 constexpr Real astray = 3000;
-constexpr int most_iterations = 200;  // of a round
 constexpr Real part_of_round = 1e-3;  // to which a round brings the residual of its linear system
 
 /// While one lives nothing depends on velocities, for these are those of a jump.
@@ -71,7 +70,7 @@ class Newton {
   }
 
   /// Returns the iterations of the linear system; 0, or -1 where it has no answer: nothing moves.
-  int move(Queue q, Real& unbalance) {
+  int move(Queue q, int most_iterations, Real& unbalance) {
     if (!inverse_) return 0;
     const Model& m = *model_;
     State& s = *state_;
@@ -110,7 +109,7 @@ class Newton {
 
 }  // namespace
 
-RestFound solve_for_rest(Model& m, State& s, Real limit) {
+RestFound solve_for_rest(Model& m, State& s, Real limit, int most_iterations) {
   const RunOnDevice on_device;
   const Queue q;
   RestFound found;
@@ -125,7 +124,7 @@ RestFound solve_for_rest(Model& m, State& s, Real limit) {
     Newton newton(m, s);
     for (int slow = 0; found.rounds < most_rounds && found.after > limit && slow < 2;) {
       Real unbalance = 0;
-      const int iterations = newton.move(q, unbalance);
+      const int iterations = newton.move(q, most_iterations, unbalance);
       if (iterations <= 0) break;
       ++found.rounds;
       found.iterations += iterations;

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from cdem.mesh.arrays import components
 from cdem.model.build import Build
 
 
@@ -28,11 +29,10 @@ def unheld_blocks(build: Build, out: NDArray[np.bool_]) -> NDArray[np.bool_]:
     joined = joined[~out[joined].any(axis=1)]
     held = out.copy()
     held[t.node_block[build.arrays["support.row"][: len(t.node_block)] >= 0]] = True
-    while True:  # one round per block in a chain of supports
-        reached = held[joined].any(axis=1) & ~held[joined].all(axis=1)
-        if not reached.any():
-            return ~held
-        held[joined[reached]] = True
+    body = components(len(held), *joined.T)
+    holds = np.zeros(len(held), bool)
+    holds[body[held]] = True
+    return ~(held | holds[body])
 
 
 def _pairs_of(first: NDArray, other: NDArray) -> NDArray:

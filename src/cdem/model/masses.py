@@ -324,9 +324,10 @@ def _supported_inverses(matrices: Floats, supported: NDArray[np.bool_]) -> Float
         supported: Components of the blocks' nodes that are fixed or driven, shape (blocks, n, 3).
     """
     out = np.zeros((len(matrices), 3, *matrices.shape[1:]))
-    for b, m in enumerate(matrices):
-        for axis in range(3):
-            free = np.flatnonzero(~supported[b, :, axis])
-            if len(free):
-                out[b, axis][np.ix_(free, free)] = inverses(m[np.ix_(free, free)])
+    for axis in range(3):
+        patterns, which = np.unique(supported[..., axis], axis=0, return_inverse=True)
+        for number, held in enumerate(patterns):
+            alike, free = np.flatnonzero(which.ravel() == number), np.flatnonzero(~held)
+            part = matrices[np.ix_(alike, free, free)]
+            out[np.ix_(alike, [axis], free, free)] = inverses(part)[:, None]
     return out

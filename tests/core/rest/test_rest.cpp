@@ -42,6 +42,15 @@ TEST_CASE("bonded boxes under their weight") {
   check_same_rest(solved, relaxed);
 }
 
+TEST_CASE("a round that needs more iterations moves nothing") {
+  Wall wall;
+  const Vec before = wall.position(0);
+  const RestFound found = solve_for_rest(wall.model, wall.state, 1e-8, 1);
+  CHECK(found.rounds == 0);
+  CHECK(found.after == found.before);
+  CHECK(distance(before, wall.position(0)) == 0);
+}
+
 TEST_CASE("a box that lies on another one") {
   const auto fill = [](Scene& scene) {
     scene.add_box({-2, -2, -1}, {4, 4, 1}, true);
