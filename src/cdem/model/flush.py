@@ -45,6 +45,8 @@ def flush_beside(
     Returns:
         Faces and neighbours of their mates that are not mates of theirs.
     """
+    if len(face) == 0:
+        return face, mate
     walls = np.unique(face)
     nodes = t.face_nodes[walls]
     used = nodes >= 0

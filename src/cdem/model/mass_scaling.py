@@ -53,22 +53,28 @@ class Scaling:
         """Mass to add for a stable step [s] to each node [kg], shape (nodes,)."""
         return np.maximum.reduce([state.added(limit) for state in self._states])
 
-    def limit(self, share: float) -> float:
-        """The longest stable step [s] that needs no more than this fraction of the free mass."""
+    def limit(self, share: float, within: float = 0.0) -> float:
+        """The longest stable step [s] that needs no more than this fraction of the free mass.
+
+        Args:
+            share: Fraction of the free mass.
+            within: The result may be shorter by this fraction.
+        """
         largest = max(state.largest for state in self._states)
         if not largest > 0:
             return np.inf
         low, high = _steps(largest)
         needing, total = np.arange(len(self._states[0].mass)), np.zeros(len(self._states[0].mass))
+        found = False  # has a step been found that needs more?
         for _ in range(ROUNDS):
-            middle = 0.5 * (low + high)
+            middle = 0.5 * (low + high) if found else min(2 * low, high)
             here = [state.added(middle, needing) for state in self._states]
             total[needing] = np.maximum.reduce(here)
             if total.sum() <= share * self.free_mass:
                 low = middle
             else:  # nodes without added mass need none for shorter steps
-                high, needing = middle, needing[total[needing] > 0]
-            if same_everywhere(np.array(low)) == same_everywhere(np.array(high)):
+                found, high, needing = True, middle, needing[total[needing] > 0]
+            if high - low < within * low or np.ptp(same_everywhere(np.array([low, high]))) == 0:
                 break
         return float(same_everywhere(np.array(low)))
 
