@@ -329,5 +329,5 @@ def _supported_inverses(matrices: Floats, supported: NDArray[np.bool_]) -> Float
         for number, held in enumerate(patterns):
             alike, free = np.flatnonzero(which.ravel() == number), np.flatnonzero(~held)
             part = matrices[np.ix_(alike, free, free)]
-            out[np.ix_(alike, [axis], free, free)] = inverses(part)[:, None]
+            out[np.ix_(alike, np.array([axis]), free, free)] = inverses(part)[:, None]
     return out

@@ -179,8 +179,10 @@ def _solve(sim: RunState, stage: StageState) -> float:
     if sim.stage_index < len(sim.case.stages) - 1:
         stages.solve(sim, stage)
         return time.perf_counter() - begin
+    limit = sim.case.stages[-1].tolerance
+    assert limit is not None  # the case has filled it in
     stage.solved = "measured"
-    sim.core.solve_for_rest(sim.case.stages[-1].tolerance, 1)
+    sim.core.solve_for_rest(limit, 1)
     return WHOLE * (time.perf_counter() - begin)
 
 
