@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from cdem.cli.options import Threads
+from cdem.errors import CaseError
 
 if TYPE_CHECKING:
     from cdem.verification.runner import Outcome, Problem
@@ -31,11 +32,16 @@ def verify(
     threads: Threads = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON instead.")] = False,
     listing: Annotated[bool, typer.Option("--list", help="Only list the problems.")] = False,
+    paper: Annotated[
+        bool, typer.Option("--paper", help="The figures of Feng et al. (2014), in their order.")
+    ] = False,
 ) -> None:
     """Compute problems with known answers and compare; exit status 3 if one is missed."""
     from cdem.verification import runner as verification
 
-    chosen = verification.problems(names or [])
+    if paper and names:
+        raise CaseError("--paper chooses the problems: leave out the names")
+    chosen = verification.problems_of_paper() if paper else verification.problems(names or [])
     if listing:
         _print_list(chosen)
         return
@@ -44,7 +50,7 @@ def verify(
         from cdem.verification.manual import Manual
 
         manual = Manual(report)
-    if not names and not full:
+    if not names and not full and not paper:
         chosen = [problem for problem in chosen if problem.quick]
     outcomes = []
     for problem in chosen:
@@ -55,9 +61,18 @@ def verify(
     if as_json:
         print(json.dumps([outcome.as_dict() for outcome in outcomes], indent=2))
     else:
+        if paper:
+            _print_stored()
         print(f"{passed} of {len(outcomes)} problems pass" + (f"; see {report}" if report else ""))
     if passed < len(outcomes):
         raise typer.Exit(3)
+
+
+def _print_stored() -> None:
+    from cdem.verification.stored import STORED
+
+    for stored in STORED:
+        print(stored.text())
 
 
 def _print_list(chosen: list[Problem]) -> None:

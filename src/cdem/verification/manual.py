@@ -108,13 +108,22 @@ def _table(outcome: Outcome) -> str:
 def _exhibit(exhibit: Curve | Picture) -> str:
     title = html.escape(exhibit.title)
     try:
-        data = _plot(exhibit) if isinstance(exhibit, Curve) else _draw(exhibit)
+        data = image(exhibit)
     except CdemError as error:
         return f"<p>{title}: not drawn, {html.escape(str(error))}</p>"
     return (
         f'<figure><img alt="{title}" src="data:image/png;base64,'
         f'{base64.b64encode(data).decode()}"><figcaption>{title}</figcaption></figure>'
     )
+
+
+def image(exhibit: Curve | Picture) -> bytes:
+    """A plot or picture as PNG.
+
+    Raises:
+        CdemError: A library that draws is not installed.
+    """
+    return _plot(exhibit) if isinstance(exhibit, Curve) else _draw(exhibit)
 
 
 def _plot(curve: Curve) -> bytes:

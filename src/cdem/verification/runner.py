@@ -9,6 +9,7 @@ from __future__ import annotations
 import difflib
 import importlib.util
 import math
+import re
 import time
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
@@ -293,6 +294,11 @@ class Problem:
         """Whether it belongs to the set that is run by default."""
         return bool(getattr(self.module, "QUICK", True))
 
+    @property
+    def paper(self) -> str:
+        """Figures and tables of Feng et al. (2014) that it is of, or nothing."""
+        return str(getattr(self.module, "PAPER", ""))
+
     def run(self, *, full: bool = False, threads: int | None = None) -> Outcome:
         """Run it; an error inside is a failure of the outcome, not an exception."""
         study = Study(self.folder, full=full, threads=threads)
@@ -306,6 +312,12 @@ class Problem:
         else:
             failure = "" if study.checks else "checks nothing"
         return Outcome(self, study.checks, study.exhibits, failure, time.perf_counter() - began)
+
+
+def problems_of_paper() -> list[Problem]:
+    """The shipped problems of Feng et al. (2014), in the order of its figures."""
+    found = [problem for problem in problems() if problem.paper]
+    return sorted(found, key=lambda problem: int(re.findall(r"\d+", problem.paper)[0]))
 
 
 def problems(names: Iterable[str] = ()) -> list[Problem]:

@@ -7,6 +7,8 @@ import numpy as np
 from cdem.output.render import snapshot
 from cdem.study.critical import find_critical
 
+PAPER = "Figs. 24 to 28"
+
 GRAVITY = 9.81
 
 

@@ -4,6 +4,8 @@ import numpy as np
 
 from cdem.verification.runner import break_factor
 
+PAPER = "Fig. 15, Table 1"
+
 MESHES = {"1:1": (1, 1), "1:2": (1, 2), "2:3": (2, 3)}  # faces along each side, below and above
 
 

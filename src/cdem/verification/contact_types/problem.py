@@ -5,6 +5,8 @@ import numpy as np
 from cdem.output.render import snapshot
 from cdem.rows import rows_of
 
+PAPER = "Figs. 12, 13"
+
 LOWER = {  # the topmost face, edge (along y) or vertex at the origin
     "face": ["model.blocks.0.translate=[-0.5, -0.5, -1]"],
     "edge": ["model.blocks.0.rotate={axis: [0, 1, 0], angle: 45}",

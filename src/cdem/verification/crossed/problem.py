@@ -4,6 +4,8 @@ import numpy as np
 
 from cdem.output.render import snapshot
 
+PAPER = "Fig. 18"
+
 
 def theory(gravity, friction_angle):
     """a = g (sin t - cos t tan phi), Feng et al. (2014), Eq. 15 [m/s2]."""

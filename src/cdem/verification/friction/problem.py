@@ -4,6 +4,8 @@ import numpy as np
 
 from cdem.study.critical import find_critical, parameter
 
+PAPER = "Fig. 15, Table 1"
+
 # cells along a side of the bed, of 3 m, and of the block, of 1 m
 MESHES = {"1:1": (3, 1), "1:2": (6, 1), "2:3": (9, 2)}
 

@@ -4,6 +4,8 @@ import numpy as np
 
 from cdem.output.render import snapshot
 
+PAPER = "Fig. 18, Eq. 15"
+
 BEDS = {
     "one face": ([1, 1, 1], "hex8"),
     "160 hexahedra": ([20, 8, 1], "hex8"),

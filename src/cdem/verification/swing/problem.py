@@ -4,6 +4,8 @@ import numpy as np
 
 from cdem.output.render import snapshot
 
+PAPER = "Figs. 4, 5"
+
 GRAVITY, SIDE = 9.81, 10.0
 ARM = SIDE / np.sqrt(2)  # from the corner to the centre of mass [m]
 START = np.radians(135)  # from straight down; the centre starts above and to the right

@@ -7,6 +7,8 @@ from cdem.run.simulation import Simulation
 from cdem.study.critical import find_critical
 from cdem.verification.masonry import block, course, tilt, tilt_limit
 
+PAPER = "Figs. 16, 17"
+
 CELL, DEPTH = 0.1, 0.1  # height of a course (stones have one or two times this length); depth [m]
 QUICK = False
 FRICTION = 26.0  # [deg]

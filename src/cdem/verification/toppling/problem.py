@@ -6,6 +6,8 @@ from cdem.output.render import snapshot
 from cdem.run.simulation import Simulation
 from cdem.study.critical import find_critical
 
+PAPER = "Fig. 15, Table 1"
+
 GRAVITY = 9.81
 # cells along a side of the bed, of 3 m, and of the column, of 1 m
 MESHES = {"1:1": (3, 1), "1:2": (6, 1), "2:3": (9, 2)}
