@@ -37,23 +37,16 @@ def verify(
     ] = False,
 ) -> None:
     """Compute problems with known answers and compare; exit status 3 if one is missed."""
-    from cdem.verification import runner as verification
-
-    if paper and names:
-        raise CaseError("--paper chooses the problems: leave out the names")
-    chosen = verification.problems_of_paper() if paper else verification.problems(names or [])
     if listing:
-        _print_list(chosen)
+        _print_list(_chosen(names, paper=paper))
         return
     manual = None
     if report:
         from cdem.verification.manual import Manual
 
         manual = Manual(report)
-    if not names and not full and not paper:
-        chosen = [problem for problem in chosen if problem.quick]
     outcomes = []
-    for problem in chosen:
+    for problem in _chosen(names, paper=paper, quick=not full):
         outcomes.append(_compute(problem, full=full, threads=threads, silent=as_json))
         if manual:  # after each, so that nothing is lost if the next one is stopped
             manual.add(outcomes[-1])
@@ -66,6 +59,18 @@ def verify(
         print(f"{passed} of {len(outcomes)} problems pass" + (f"; see {report}" if report else ""))
     if passed < len(outcomes):
         raise typer.Exit(3)
+
+
+def _chosen(names: list[str] | None, *, paper: bool, quick: bool = False) -> list[Problem]:
+    """The problems asked for; all, or quick ones, where none is named."""
+    from cdem.verification import runner
+
+    if names and paper:
+        raise CaseError("--paper chooses the problems: leave out the names")
+    if paper:
+        return runner.problems_of_paper()
+    found = runner.problems(names or [])
+    return [problem for problem in found if names or not quick or problem.quick]
 
 
 def _print_stored() -> None:
