@@ -12,7 +12,7 @@ from pathlib import Path
 ROOT = Path(__file__).parent.parent / "src"
 
 FOLDERS = {
-    "_version errors units whole_files _instruction_sets _core_choice own_laws _core _native rows": "",
+    "_version errors named units whole_files _instruction_sets _core_choice own_laws _core _native rows": "",
     "case": "the input: keys, types, checks, errors",
     "mesh": "elements, blocks, faces, edges; mesh files",
     "joints": "joint sets cut bodies into blocks",

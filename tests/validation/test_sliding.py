@@ -185,7 +185,7 @@ def test_acceleration_over_a_slightly_uneven_bed(monkeypatch):
     [
         pytest.param("10 x 8 hexahedra", 1e-4, marks=pytest.mark.slow),
         ("756 tets", 0.01),
-        pytest.param("flush blocks", 2e-5, marks=pytest.mark.slow),
+        ("flush blocks", 2e-5),
     ],
 )
 def test_contact_force_is_continuous_at_seams(bed, within):
@@ -224,7 +224,7 @@ def test_contact_force_is_continuous_at_seams(bed, within):
     weight = 2500 * 0.4 * GRAVITY * np.cos(slope)
     nodes, face_nodes = sim.build.nodes_of("block"), sim.build.topology.face_nodes
     exposed = sim.core.array("search.exposed_face")[0].copy()
-    seams = change_at_seam = change_of_sum = 0.0
+    seams = change_at_seam = change_of_sum = let_go = 0.0
     before = None
     while sim.time < 0.4:
         sim.step(1)
@@ -239,9 +239,14 @@ def test_contact_force_is_continuous_at_seams(bed, within):
                     seams += 1
                     change = np.linalg.norm(force[slot] - last_force[slot])
                     change_at_seam = max(change_at_seam, change / np.linalg.norm(last_force[slot]))
+            ended = np.flatnonzero((target < 0) & (last_target >= 0))
+            of_block = np.isin(face_nodes[exposed[ended // 4], ended % 4], nodes)
+            size = np.linalg.norm(last_force[ended[of_block]], axis=1)
+            let_go = max(let_go, size.max(initial=0.0) / weight)
             change_of_sum = max(change_of_sum, abs(total - last_total) / weight)
         before = target, force, total
     assert seams >= 3
+    assert let_go < 1e-4  # a vertex lost 0.5 % where it was over one block, indented over the next
     assert change_at_seam < within
     assert change_of_sum < 0.09
 

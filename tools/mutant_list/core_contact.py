@@ -236,6 +236,14 @@ FAULTS = [
         "tests/validation/test_flush_blocks.py::test_a_slab_passes_a_kink_with_any_front",
     ),
     Mutant(
+        "left in a seam",
+        "a vertex is over a block that its indented point has left",
+        "core/contact/narrow_phase/target_face.hpp",
+        "!flush.cover(faces, rules, face, s.p, spared);",
+        "!flush.cover(faces, rules, face, s.v, spared);",
+        "tests/validation/test_sliding.py::test_contact_force_is_continuous_at_seams",
+    ),
+    Mutant(
         "edges in a foot",
         "edges of a seam in a concave corner may be met",
         "core/contact/narrow_phase/flush_faces.hpp",

@@ -9,7 +9,7 @@ import traceback
 from collections.abc import Callable
 from pathlib import Path
 
-OF_THE_MACHINE = ("wall_time",)
+OF_THE_MACHINE = ("wall_time", "date", "host")
 CASE = """
 title: two blocks fall on a third and break
 model:

@@ -279,9 +279,12 @@ struct DropPassedTargets : FaceSearch {
     if (flush.cover(faces, rules, target, s.p - plane_gap(s.p, t) * n, s.node)) return true;
     if (!flush.at_node[s.node]) return false;
     const Index spared = faces.vertex(target, 0);
+    // of two parallel faces that meet in a seam the indented point chooses
+    const bool left = dot(geometry.normal(m), n) < -coplanar_faces &&
+                      !flush.cover(faces, rules, face, s.p, spared);
     Index f = face;
     for (Index turn = 0; turn < most_around; ++turn) {
-      if (flush.obstruct(faces, rules, f, s.v, -n, spared)) return true;
+      if (!(left && f == face) && flush.obstruct(faces, rules, f, s.v, -n, spared)) return true;
       Index side;
       const Index next = flush.next_around(faces, f, s.node, side);
       if (next < 0) return false;

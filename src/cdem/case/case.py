@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterable
 from contextlib import AbstractContextManager
+from hashlib import sha256
 from pathlib import Path
 from typing import Any
 
@@ -111,6 +113,25 @@ class Case(CaseParts):
     def path_of(self, file: str | Path) -> Path:
         """Return a path named in the case; a relative one starts at the case file's folder."""
         return self._source.folder / file
+
+    def digests(self) -> dict[str, str]:
+        """SHA-256 of the values, as JSON with sorted keys ("case"), and of the files that they name."""
+        data = self.model_dump(mode="json")
+        names = {holder[key] for holder, key in files_of(data)}
+        found = {"case": sha256(json.dumps(data, sort_keys=True).encode()).hexdigest()}
+        for name in sorted(names):
+            if self.path_of(name).is_file():
+                found[name] = sha256(self.path_of(name).read_bytes()).hexdigest()
+        return found
+
+    def __repr__(self) -> str:
+        return (
+            f"<Case {self.title!r}: groups {', '.join(self.groups)}; "
+            f"stages {', '.join(stage.name for stage in self.stages)}>"
+        )
+
+    def __str__(self) -> str:
+        return repr(self)
 
     def blame(self, path: str) -> AbstractContextManager[None]:
         """Put ``file:line:col: path:`` in front of a CdemError or ValueError raised inside."""

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from cdem.cli.options import Threads
+from cdem.cli.options import AsJson, Threads
 from cdem.errors import CaseError
 
 if TYPE_CHECKING:
@@ -30,7 +30,7 @@ def verify(
         Path | None, typer.Option(metavar="FILE", help="Write the manual: .html, or .md (table).")
     ] = None,
     threads: Threads = None,
-    as_json: Annotated[bool, typer.Option("--json", help="Print JSON instead.")] = False,
+    as_json: AsJson = False,
     listing: Annotated[bool, typer.Option("--list", help="Only list the problems.")] = False,
     paper: Annotated[
         bool, typer.Option("--paper", help="The figures of Feng et al. (2014), in their order.")
@@ -112,7 +112,7 @@ def benchmark(
         bool, typer.Option("--full", help="Also a million tets; needs 8 GB and half an hour.")
     ] = False,
     threads: Threads = None,
-    as_json: Annotated[bool, typer.Option("--json", help="Print JSON instead.")] = False,
+    as_json: AsJson = False,
 ) -> None:
     """Measure the speed of the kernels against the machine's own limits."""
     from cdem.tools import benchmark as bench
@@ -134,11 +134,11 @@ def benchmark(
         print(json.dumps({"machine": limits, "rows": [vars(row) for row in rows]}, indent=2))
 
 
-def doctor() -> None:
+def doctor(as_json: AsJson = False) -> None:
     """Check what works on this machine, and say how to mend the rest."""
-    from cdem.tools.doctor import report
+    from cdem.tools.doctor import report, text
 
-    text, healthy = report()
-    print(text)
+    rows, healthy = report()
+    print(json.dumps(dict(rows), indent=2) if as_json else text(rows))
     if not healthy:
         raise typer.Exit(1)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import signal
 import sys
 from collections.abc import Iterable, Iterator
@@ -20,6 +21,7 @@ Settings = Annotated[
     typer.Option("--set", metavar="KEY=VALUE", help="Replace a value of the case; repeatable."),
 ]
 Threads = Annotated[int | None, typer.Option(min=1, help="Threads; default all cores.")]
+AsJson = Annotated[bool, typer.Option("--json", help="Print JSON instead.")]
 
 AllowCode = Annotated[
     bool,
@@ -28,9 +30,13 @@ AllowCode = Annotated[
 Strict = Annotated[bool, typer.Option("--strict", help="Treat warnings as errors.")]
 
 
-def print_paths(paths: Path | Iterable[Path]) -> None:
-    """Print one path a line."""
-    for path in [paths] if isinstance(paths, Path) else paths:
+def print_paths(paths: Path | Iterable[Path], *, as_json: bool = False) -> None:
+    """Print one path a line, or a list of JSON."""
+    found = [paths] if isinstance(paths, Path) else paths
+    if as_json:
+        print(json.dumps([str(path) for path in found], indent=2))
+        return
+    for path in found:
         print(path)
 
 

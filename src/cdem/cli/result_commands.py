@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import json
 import os
 import sys
 import tempfile
@@ -13,24 +14,28 @@ from typing import Annotated, Any, Literal
 import typer
 from typer.core import TyperCommand
 
-from cdem.cli.options import print_paths
+from cdem.cli.options import AsJson, print_paths
 from cdem.errors import BackendError, CaseError, CdemError
 
 ResultFolder = Annotated[Path, typer.Argument(metavar="DIR", help="Result folder of a run.")]
 
 
-def info(folder: ResultFolder) -> None:
+def info(folder: ResultFolder, as_json: AsJson = False) -> None:
     """Summarize a run."""
     from cdem.output import report
+    from cdem.output.reader import read_summary
 
+    if as_json:
+        print(json.dumps(read_summary(_results(folder)), indent=2))
+        return
     print(report.info(_results(folder)).rstrip())
 
 
-def plot(folder: ResultFolder) -> None:
+def plot(folder: ResultFolder, as_json: AsJson = False) -> None:
     """Draw histories and energies as PNG."""
     from cdem.output import figures
 
-    print_paths(figures.plot(_results(folder)))
+    print_paths(figures.plot(_results(folder)), as_json=as_json)
 
 
 def _fields() -> list[str]:
@@ -213,11 +218,12 @@ def _numbers(text: str, option: str, count: int) -> list[float]:
 def export(
     folder: ResultFolder,
     to: Annotated[Literal["vtu"], typer.Option("--to", help="File format.")] = "vtu",
+    as_json: AsJson = False,
 ) -> None:
     """Write the frames as files for ParaView and the like."""
     from cdem.output import reader
 
-    print_paths(reader.export(_results(folder), to=to))
+    print_paths(reader.export(_results(folder), to=to), as_json=as_json)
 
 
 def _results(folder: Path) -> Path:

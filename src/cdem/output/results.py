@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cdem.errors import CdemError
+from cdem.named import Named
 from cdem.output.meshes import surface_mesh, volume_mesh
 from cdem.output.reader import FrameSeries, SurfaceSeries, read_histories, read_summary
 from cdem.output.report import info
@@ -72,7 +73,7 @@ class Results:
     @property
     def histories(self) -> dict[str, NDArray[np.float64]]:
         """Columns of histories.csv by name, e.g. "time [s]"."""
-        return read_histories(self.folder)
+        return Named("column", read_histories(self.folder))
 
     def table(self) -> Any:
         """The histories as a table of pandas.

@@ -76,7 +76,7 @@ class Simulation(RunState):
 
     def __init__(
         self,
-        case: Case | str | Path,
+        case: Case | dict[str, Any] | str | Path,
         *,
         threads: int | None = None,
         output: str | Path | None = None,
@@ -85,6 +85,8 @@ class Simulation(RunState):
         force: bool = False,
         strict: bool = False,
     ) -> None:
+        if isinstance(case, dict):
+            case = Case.from_dict(case)
         case = case if isinstance(case, Case) else Case.load(case)
         threads = threads or os.cpu_count() or 1
         native.set_threads(threads)

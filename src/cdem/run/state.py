@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import platform
 from dataclasses import asdict, dataclass, fields
+from datetime import datetime
 from functools import cached_property
 from typing import Any
 
@@ -19,6 +21,7 @@ from cdem.errors import CaseError
 from cdem.model.audit import Audit
 from cdem.model.build import Build, build
 from cdem.model.domain import leaving
+from cdem.named import Named
 from cdem.rows import rows_of
 from cdem.run.changes import differences
 from cdem.run.groups import Group, groups_of
@@ -145,6 +148,14 @@ class RunState:
         self.begins: dict[str, float] = {}
         self.watched = self.build.start_position
 
+    def __repr__(self) -> str:
+        counts = self.audit.counts
+        stage = f"stage {self.stage.name}, " if self.stage else ""
+        return (
+            f"<{type(self).__name__} {self.case.title!r}: blocks {counts['blocks']:,}, elements "
+            f"{counts['elements']:,}; {stage}step {self.step_count:,}, t {self.time:.4g} s>"
+        )
+
     def tell(self, text: str) -> None:
         """Take a line for the log of a run; here there is none."""
 
@@ -168,6 +179,11 @@ class RunState:
                 "made, which has no effect. Use simulation.set(path, value), or give a stage "
                 "a 'set'"
             )
+
+    @cached_property
+    def _inputs(self) -> dict[str, str]:
+        """Digests of the files of the case, read once."""
+        return self.given_case.digests()
 
     @property
     def time(self) -> float:
@@ -204,12 +220,12 @@ class RunState:
         }
         for values in found.values():
             values.flags.writeable = False
-        return found
+        return Named("field", found)
 
     @cached_property
     def groups(self) -> dict[str, Group]:
         """Nodes, elements and blocks of each group, by its name."""
-        return groups_of(self.build)
+        return Named("group", groups_of(self.build))
 
     @property
     def contacts(self) -> dict[str, NDArray]:
@@ -224,13 +240,14 @@ class RunState:
         springs, edges = rows_of(core, "spring.state"), rows_of(core, "edge.state")
         on_vertices, on_sides = rows_of(core, "spring.reaction"), rows_of(core, "edge.reaction")
         crossing = rows_of(core, "edge.contact")
-        return {
+        found = {
             "kind": np.repeat([0, 1], [len(slots), len(crossing.target)]),
             "mother_face": exposed[np.concatenate([slots, crossing.mother_side]) // 4],
             "target_face": exposed[np.concatenate([target[slots], crossing.target])],
             "force_n": np.concatenate([springs.force_n[slots], edges.force_n]),
             "force": np.concatenate([on_vertices.force[slots], on_sides.force]),
         }
+        return Named("column", found)
 
     @property
     def rigid_motion(self) -> Motion:
@@ -345,7 +362,7 @@ class RunState:
     @property
     def energies(self) -> dict[str, float]:
         """Energy ledger at the last sampled step [J], and its closing "error" (a fraction)."""
-        return self.core.energies()
+        return Named("energy", self.core.energies())
 
     @property
     def broken(self) -> dict[str, int]:
@@ -410,6 +427,9 @@ class RunState:
             "status": status,
             "title": self.case.title,
             "version": __version__,
+            "date": datetime.now().astimezone().isoformat(timespec="seconds"),
+            "host": platform.node(),
+            "inputs": self._inputs,
             "own_laws": digests,
             "device": f"{device} ({native_name})",
             "threads": self.threads,

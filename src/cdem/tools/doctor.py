@@ -26,11 +26,11 @@ assert plotter.screenshot(return_img=True).std() > 0
 OPENGL_HINT = "apt install libosmesa6, or libegl1 libgl1-mesa-dri libopengl0"
 
 
-def report() -> tuple[str, bool]:
+def report() -> tuple[list[tuple[str, str]], bool]:
     """Check the machine.
 
     Returns:
-        The report, and whether cases can run.
+        Findings by their names, and whether cases can run.
     """
     core, healthy = _core()
     rows = [
@@ -44,7 +44,12 @@ def report() -> tuple[str, bool]:
         ("OpenGL", _opengl()),
         *_extras(),
     ]
-    return "\n".join(f"{name:<10}{text}" for name, text in rows), healthy
+    return rows, healthy
+
+
+def text(rows: list[tuple[str, str]]) -> str:
+    """Findings, one a line."""
+    return "\n".join(f"{name:<10}{found}" for name, found in rows)
 
 
 def _core() -> tuple[str, bool]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 from cdem import __version__
@@ -14,6 +15,8 @@ def test_doctor_says_what_works(run_cli, monkeypatch):
     assert status == 0
     assert f"cdem      {__version__}" in out
     assert " is used; built for " in out
+    status, out, _ = run_cli("doctor", "--json")
+    assert status == 0 and json.loads(out)["cdem"] == __version__
 
 
 def test_doctor_says_who_chose_the_core(monkeypatch):

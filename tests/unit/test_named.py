@@ -1,0 +1,85 @@
+"""Names that users of Python meet: of values, of classes and of the package."""
+
+from __future__ import annotations
+
+import copy
+import json
+import pickle
+
+import pytest
+import yaml
+from shared.cases import CUBE
+
+import cdem
+from cdem.named import Named
+
+
+def test_a_missing_name_is_answered_by_those_that_are_there():
+    found = Named("field", {"velocity": 1.0, "mass": 2.0})
+    with pytest.raises(KeyError, match="no field 'speed'; there are: velocity, mass"):
+        found["speed"]
+    assert found.get("speed") is None and "speed" not in found
+    for same in (copy.deepcopy(found), pickle.loads(pickle.dumps(found))):
+        assert same == {"velocity": 1.0, "mass": 2.0} and same.kind == "field"
+
+
+def test_the_package_shows_its_public_names_alone():
+    assert set(dir(cdem)) == {*cdem.__all__, "open"}
+    for name in dir(cdem):
+        assert getattr(cdem, name)
+
+
+def test_a_simulation_is_made_of_a_dictionary_and_says_how_it_is():
+    simulation = cdem.Simulation(yaml.safe_load(CUBE), threads=1)
+    assert repr(simulation.case) == "<Case 'A cube falls': groups cube; stages fall>"
+    simulation.step(2)
+    assert repr(simulation).startswith(
+        "<Simulation 'A cube falls': blocks 1, elements 1; step 2, t "
+    )
+    with pytest.raises(KeyError, match="no group 'cubes'; there are: cube"):
+        simulation.groups["cubes"]
+    for values in (simulation.fields, simulation.energies, simulation.contacts):
+        with pytest.raises(KeyError, match="there are: "):
+            values["nothing"]
+
+
+def test_a_summary_says_when_where_and_of_which_files(cube_folder, run_cli):
+    (cube_folder / "cube.yaml").write_text(CUBE)
+    assert run_cli("run", "cube.yaml", "--quiet")[0] == 0
+    status, out, _ = run_cli("info", "cube.results", "--json")
+    summary = json.loads(out)
+    assert status == 0 and summary == json.loads(
+        (cube_folder / "cube.results/summary.json").read_text()
+    )
+    assert summary["host"] and summary["date"][:2] == "20"
+    assert summary["inputs"] == cdem.Case.load("cube.yaml").digests()
+    assert list(summary["inputs"]) == ["case"] and len(summary["inputs"]["case"]) == 64
+
+
+def test_digests_are_those_of_values_and_files_wherever_they_lie(tmp_path):
+    for folder, space in (("a", ""), ("b", " ")):
+        (tmp_path / folder).mkdir()
+        (tmp_path / folder / "force.csv").write_text(f"time,value\n0,0\n1,1{space}\n")
+        (tmp_path / folder / "cube.yaml").write_text(
+            CUBE.replace(
+                "loads: {",
+                "loads: {tractions: [{surface: {group: cube, normal: [1, 0, 0]}, "
+                "traction: [1, 0, 0], history: {file: force.csv}}], ",
+            )
+            + space
+        )
+    one, other = (cdem.Case.load(tmp_path / name / "cube.yaml").digests() for name in "ab")
+    assert one["case"] == other["case"] and one["force.csv"] != other["force.csv"]
+
+
+def test_paths_come_as_json(cube_folder, run_cli):
+    (cube_folder / "cube.yaml").write_text(CUBE)
+    assert run_cli("run", "cube.yaml", "--quiet")[0] == 0
+    for command in ("plot", "export"):
+        status, out, _ = run_cli(command, "cube.results", "--json")
+        assert status == 0
+        for path in json.loads(out):
+            assert (cube_folder / path).exists()
+    results = cdem.open("cube.results")
+    with pytest.raises(KeyError, match="no column 'speed'"):
+        results.histories["speed"]
