@@ -6,6 +6,8 @@ import copy
 import json
 import pickle
 
+import meshio
+import numpy as np
 import pytest
 import yaml
 from shared.cases import CUBE
@@ -57,19 +59,16 @@ def test_a_summary_says_when_where_and_of_which_files(cube_folder, run_cli):
 
 
 def test_digests_are_those_of_values_and_files_wherever_they_lie(tmp_path):
-    for folder, space in (("a", ""), ("b", " ")):
+    corners = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]])
+    text = CUBE.replace("blocks: [{group: cube, box: {size: [1, 1, 1]}}]", "mesh: tet.vtk")
+    for folder, size in (("a", 1.0), ("b", 2.0)):
         (tmp_path / folder).mkdir()
-        (tmp_path / folder / "force.csv").write_text(f"time,value\n0,0\n1,1{space}\n")
-        (tmp_path / folder / "cube.yaml").write_text(
-            CUBE.replace(
-                "loads: {",
-                "loads: {tractions: [{surface: {group: cube, normal: [1, 0, 0]}, "
-                "traction: [1, 0, 0], history: {file: force.csv}}], ",
-            )
-            + space
-        )
+        mesh = meshio.Mesh(size * corners, [("tetra", [[0, 1, 2, 3]])])
+        meshio.write(tmp_path / folder / "tet.vtk", mesh)
+        (tmp_path / folder / "cube.yaml").write_text(text + "\n# a remark\n" * int(size))
     one, other = (cdem.Case.load(tmp_path / name / "cube.yaml").digests() for name in "ab")
-    assert one["case"] == other["case"] and one["force.csv"] != other["force.csv"]
+    assert list(one) == ["case", "tet.vtk"]
+    assert one["case"] == other["case"] and one["tet.vtk"] != other["tet.vtk"]
 
 
 def test_paths_come_as_json(cube_folder, run_cli):
