@@ -71,6 +71,19 @@ def test_digests_are_those_of_values_and_files_wherever_they_lie(tmp_path):
     assert one["case"] == other["case"] and one["tet.vtk"] != other["tet.vtk"]
 
 
+def test_a_file_that_goes_while_a_run_goes_on_costs_nothing(tmp_path):
+    mesh = meshio.Mesh(np.vstack([np.zeros(3), np.eye(3)]), [("tetra", [[0, 1, 2, 3]])])
+    meshio.write(tmp_path / "tet.vtk", mesh)
+    text = CUBE.replace("blocks: [{group: cube, box: {size: [1, 1, 1]}}]", "mesh: tet.vtk")
+    text = text.replace("groups: {cube: {", "groups: {default: {")
+    (tmp_path / "cube.yaml").write_text(text)
+    simulation = cdem.Simulation(tmp_path / "cube.yaml", threads=1, output=tmp_path / "out")
+    digests = simulation.case.digests()
+    (tmp_path / "tet.vtk").write_text("another one")
+    assert simulation.run() == "finished"
+    assert json.loads((tmp_path / "out/summary.json").read_text())["inputs"] == digests
+
+
 def test_paths_come_as_json(cube_folder, run_cli):
     (cube_folder / "cube.yaml").write_text(CUBE)
     assert run_cli("run", "cube.yaml", "--quiet")[0] == 0

@@ -117,9 +117,7 @@ def _averaged(t: Topology, p: Properties, shape: str) -> NDArray[np.int8]:
 def _scale_masses(t: Topology, p: Properties, out: Assembly) -> None:
     """Add mass as the case asks, and note the gain of a little mass."""
     scaling = Scaling(t, p, out)
-    bought = 0 * out.added_mass
-    if scaling.free_mass > 0:
-        bought = scaling.added(scaling.limit(OFFER, within=0.01))
+    bought = scaling.added(scaling.limit(OFFER)) if scaling.free_mass > 0 else 0 * out.added_mass
     out.limits = (scaling.limit_at_the_start(0 * bought), scaling.limit_at_the_start(bought))
     out.free_mass = scaling.free_mass
     if p.mass_scaling is None:

@@ -53,13 +53,8 @@ class Scaling:
         """Mass to add for a stable step [s] to each node [kg], shape (nodes,)."""
         return np.maximum.reduce([state.added(limit) for state in self._states])
 
-    def limit(self, share: float, within: float = 0.0) -> float:
-        """The longest stable step [s] that needs no more than this fraction of the free mass.
-
-        Args:
-            share: Fraction of the free mass.
-            within: The result may be shorter by this fraction.
-        """
+    def limit(self, share: float) -> float:
+        """The longest stable step [s] that needs no more than this fraction of the free mass."""
         largest = max(state.largest for state in self._states)
         if not largest > 0:
             return np.inf
@@ -74,7 +69,7 @@ class Scaling:
                 low = middle
             else:  # nodes without added mass need none for shorter steps
                 found, high, needing = True, middle, needing[total[needing] > 0]
-            if high - low < within * low or np.ptp(same_everywhere(np.array([low, high]))) == 0:
+            if same_everywhere(np.array(low)) == same_everywhere(np.array(high)):
                 break
         return float(same_everywhere(np.array(low)))
 

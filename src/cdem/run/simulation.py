@@ -125,6 +125,8 @@ class Simulation(RunState):
         self.audit = Audit(self.build, self.overlap, self.threads)
         if strict:
             self.audit.refuse_warnings()
+        if self.results:  # now: the files may change or go while the run goes on
+            self.inputs = self.given_case.digests()
         if self.results and not resume:
             self.results.open(self)
 

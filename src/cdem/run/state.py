@@ -147,6 +147,7 @@ class RunState:
         self.settings: list[Setting] = []
         self.begins: dict[str, float] = {}
         self.watched = self.build.start_position
+        self.inputs: dict[str, str] = {}  # digests of the case and its files, where they are kept
 
     def __repr__(self) -> str:
         counts = self.audit.counts
@@ -179,11 +180,6 @@ class RunState:
                 "made, which has no effect. Use simulation.set(path, value), or give a stage "
                 "a 'set'"
             )
-
-    @cached_property
-    def _inputs(self) -> dict[str, str]:
-        """Digests of the files of the case, read once."""
-        return self.given_case.digests()
 
     @property
     def time(self) -> float:
@@ -429,7 +425,7 @@ class RunState:
             "version": __version__,
             "date": datetime.now().astimezone().isoformat(timespec="seconds"),
             "host": platform.node(),
-            "inputs": self._inputs,
+            "inputs": self.inputs,
             "own_laws": digests,
             "device": f"{device} ({native_name})",
             "threads": self.threads,
