@@ -22,8 +22,6 @@ from cdem.model.homogenize import COLUMN, ROW, STATES
 
 Floats = NDArray[np.float64]
 
-MOST_FACES = 6
-"""Most faces of an element."""
 SHARPNESS = 2
 """A face replaces another with the weight |cos|^(2 this) of the angle between them."""
 
@@ -116,12 +114,14 @@ def shares(
     number = np.zeros(len(elements), np.intp)
     number[used] = np.arange(len(used))
     order = np.argsort(owner, kind="stable")
-    first = first_of_each(number[owner], len(used))
-    table = np.full((len(used), MOST_FACES), -1)
-    table[number[owner[order]], np.arange(len(order)) - first[number[owner[order]]]] = order
+    of_order = number[owner[order]]
+    first = first_of_each(of_order, len(used))
+    table = np.full((len(used), np.diff(first).max(initial=0)), -1)
+    table[of_order, np.arange(len(order)) - first[of_order]] = order
     some = area[faces], bonded[faces], normal
     extra = np.zeros(len(faces))
-    extra[table[table >= 0]] = in_pieces(lambda rows: _taken_over(rows, *some), table)[table >= 0]
+    there = table >= 0
+    extra[table[there]] = in_pieces(lambda rows: _taken_over(rows, *some), table)[there]
     weight = area[faces] * height[faces] / volume[used].sum()
     return Shares(faces, 0.5 + extra, some[1], weight, normal)
 
@@ -131,7 +131,7 @@ def _taken_over(rows: NDArray[np.intp], area: Floats, bonded: Floats, normal: Fl
     a = np.where(rows >= 0, area[rows], 0.0)
     n, part = normal[rows], bonded[rows]
     alike = np.einsum("efx,egx->efg", n, n) ** (2 * SHARPNESS) * a[:, None]
-    own = np.arange(MOST_FACES)
+    own = np.arange(rows.shape[1])
     alike[:, own, own] *= part
     lacks = 0.5 * a * (1 - part) / np.maximum(alike.sum(axis=2), 1e-300)
     return np.einsum("ef,efg->eg", lacks, alike) / np.where(rows >= 0, a, 1.0)

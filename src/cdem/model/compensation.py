@@ -29,7 +29,7 @@ from cdem.case.interface_schema import Interface
 from cdem.case.types import AUTO
 from cdem.errors import CaseError
 from cdem.mesh import element_shapes
-from cdem.mesh.arrays import found_in, in_pieces, inverses, same_everywhere
+from cdem.mesh.arrays import found_in, inverses, same_everywhere
 from cdem.mesh.topology import Topology
 from cdem.model.bond_shares import Shares, added, bonded_parts, longest, shares
 from cdem.model.faces import face_areas, face_heights
@@ -200,7 +200,7 @@ def compensate(
         [element_shapes.volumes(s, t.node_position[n]).sum(axis=1) for s, n in shapes.items()]
     )
     group_of = np.concatenate([t.element_group[shape] for shape in shapes])
-    area = in_pieces(lambda nodes: face_areas(t.node_position, nodes), t.face_nodes)
+    area = face_areas(t.node_position, t.face_nodes)
     height = face_heights(t, volume, area)
     bonded = bonded_parts(t, between, area)
     for group in groups:

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 from numpy.typing import NDArray
 
 from cdem.mesh import element_shapes
-from cdem.mesh.arrays import lengths
+from cdem.mesh.arrays import in_pieces, lengths
 from cdem.mesh.topology import Topology
 
 Floats = NDArray[np.float64]
@@ -18,7 +20,6 @@ def face_heights(t: Topology, volume: Floats, area: Floats) -> Floats:
     Args:
         volume: Volume of all elements, shapes in the order of `element_shapes.NODES` [m3].
         area: Area of all faces [m2].
-        area: Of all faces [m2].
     """
     # volume = area * height / divisor: 1 for a prism, 3 for a pyramid; the sides of a wedge are
     # opposite an edge (2), the sides of a pyramid lie between the two cases
@@ -47,5 +48,16 @@ def face_normals(position: Floats, face_nodes: NDArray) -> Floats:
 
 def _doubled(position: Floats, face_nodes: NDArray) -> Floats:
     """Vectors along the normals, twice as long as the areas [m2], shape (faces, 3)."""
-    x = position[np.where(face_nodes < 0, face_nodes[:, 2:3], face_nodes)]
-    return np.cross(x[:, 2] - x[:, 0], x[:, 3] - x[:, 1])
+    return in_pieces(partial(_diagonals_crossed, position), face_nodes)
+
+
+def _diagonals_crossed(position: Floats, face_nodes: NDArray) -> Floats:
+    a, b, c, d = face_nodes.T
+    d = np.where(d < 0, c, d)
+    # by columns: many times faster than np.cross of rows
+    p = np.ascontiguousarray((position[c] - position[a]).T)
+    q = np.ascontiguousarray((position[d] - position[b]).T)
+    out = np.empty((len(face_nodes), 3))
+    for k, i, j in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
+        out[:, k] = p[i] * q[j] - p[j] * q[i]
+    return out

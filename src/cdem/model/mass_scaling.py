@@ -19,8 +19,10 @@ from cdem.model.masses import one_element_blocks
 
 OFFER = 0.001
 """Fraction of the mass of free nodes; the audit reports the step for it."""
-ROUNDS = 60
-"""Most halvings of the range of the step for a given mass."""
+ROUNDS = 100
+"""Most looks for the step for a given mass."""
+NEAR = 1e-9
+"""Of the step: looks on both sides of a guess are this far from it."""
 
 
 class Scaling:
@@ -60,18 +62,24 @@ class Scaling:
             return np.inf
         low, high = _steps(largest)
         needing, total = np.arange(len(self._states[0].mass)), np.zeros(len(self._states[0].mass))
-        found = False  # has a step been found that needs more?
-        for _ in range(ROUNDS):
-            middle = 0.5 * (low + high) if found else min(2 * low, high)
-            here = [state.added(middle, needing) for state in self._states]
+
+        def too_much(step: float) -> float:
+            """Mass that this step needs beyond the share [kg]."""
+            here = [state.added(step, needing) for state in self._states]
             total[needing] = np.maximum.reduce(here)
-            if total.sum() <= share * self.free_mass:
-                low = middle
-            else:  # nodes without added mass need none for shorter steps
-                found, high, needing = True, middle, needing[total[needing] > 0]
-            if same_everywhere(np.array(low)) == same_everywhere(np.array(high)):
+            return float(total.sum() - share * self.free_mass)
+
+        ends = [(low, -share * self.free_mass), (high, np.inf)]
+        for turn in range(ROUNDS):
+            middle = _between(*ends, turn)
+            excess = too_much(middle)
+            ends[excess > 0] = (middle, excess)
+            if excess > 0:  # nodes without added mass need none for shorter steps
+                needing = needing[total[needing] > 0]
+            low, high = (same_everywhere(np.array(step)) for step, _ in ends)
+            if low == high:
                 break
-        return float(same_everywhere(np.array(low)))
+        return float(same_everywhere(np.array(ends[0][0])))
 
     def limit_at_the_start(self, added: Floats) -> float:
         """The longest stable step [s] with bonds intact and this mass added, shape (nodes,)."""
@@ -96,6 +104,21 @@ class Scaling:
                 f"the model; write at most {safety * longest:.2g} s, or most: 0.001 instead"
             )
         return self.added(limit)
+
+
+def _between(low: tuple[float, float], high: tuple[float, float], turn: int) -> float:
+    """A step between two, with the mass that each needs too much: that mass goes with its square.
+
+    In turns a little shorter and a little longer than where the line between both is zero, so that
+    both ends come close; every third is halfway, for masses that do not go along a line.
+    """
+    if high[1] == np.inf:  # too long, or not tried
+        return min(2 * low[0], high[0])
+    if turn % 3 == 2:
+        return 0.5 * (low[0] + high[0])
+    a, b = low[0] ** 2, high[0] ** 2
+    square = a - low[1] * (b - a) / (high[1] - low[1])
+    return float(np.clip(np.sqrt(square) * (1 + (-1, 1)[turn % 3] * NEAR), low[0], high[0]))
 
 
 def _steps(largest: float) -> tuple[float, float]:

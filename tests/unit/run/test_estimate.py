@@ -6,6 +6,7 @@ import json
 import re
 import time
 
+import numpy as np
 import pytest
 import yaml
 from shared.cases import FALL, WALL
@@ -149,6 +150,19 @@ def test_a_stage_is_measured_up_to_its_end_and_leads_to_the_next(monkeypatch):
     assert list(sim.begins) == ["fall", "then"]
     dt = sim.core.scalars()["dt"]
     assert 0.005 <= sim.begins["then"] < 0.005 + dt
+
+
+@pytest.mark.parametrize(("spent", "steps"), [((1, 1, 0, 1, 7), 40), ((0.4, 0.5, 0, 1, 8.1), 5)])
+def test_steps_without_much_search_need_no_rebuild(monkeypatch, spent, steps):
+    """They are all alike, so a few are enough: a million bonded tets take a second for each."""
+    monkeypatch.setattr(module, "SECONDS", 0.0)
+    clock = Clock()
+    monkeypatch.setattr(module, "time", clock)
+    sim = cdem.Simulation(cdem.Case(**yaml.safe_load(FALL)), threads=1)
+    sim.core = Core(sim.core, clock)
+    sim.core.seconds = lambda: clock.now * np.array(spent)
+    module._measure(sim, sim.core.run)
+    assert sim.step_count == steps
 
 
 def test_check_says_it(run_cli):
