@@ -60,7 +60,7 @@ class Scaling:
         largest = max(state.largest for state in self._states)
         if not largest > 0:
             return np.inf
-        low, high = _steps(largest)
+        shortest, longest = _steps(largest)
         needing, total = np.arange(len(self._states[0].mass)), np.zeros(len(self._states[0].mass))
 
         def too_much(step: float) -> float:
@@ -69,17 +69,17 @@ class Scaling:
             total[needing] = np.maximum.reduce(here)
             return float(total.sum() - share * self.free_mass)
 
-        ends = [(low, -share * self.free_mass), (high, np.inf)]
+        low, high = (shortest, -share * self.free_mass), (longest, np.inf)
         for turn in range(ROUNDS):
-            middle = _between(*ends, turn)
+            middle = _between(low, high, turn)
             excess = too_much(middle)
-            ends[excess > 0] = (middle, excess)
             if excess > 0:  # nodes without added mass need none for shorter steps
-                needing = needing[total[needing] > 0]
-            low, high = (same_everywhere(np.array(step)) for step, _ in ends)
-            if low == high:
+                high, needing = (middle, excess), needing[total[needing] > 0]
+            else:
+                low = (middle, excess)
+            if same_everywhere(np.array(low[0])) == same_everywhere(np.array(high[0])):
                 break
-        return float(same_everywhere(np.array(ends[0][0])))
+        return float(same_everywhere(np.array(low[0])))
 
     def limit_at_the_start(self, added: Floats) -> float:
         """The longest stable step [s] with bonds intact and this mass added, shape (nodes,)."""
