@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from cdem._version import __version__
+from cdem.case.yaml_text import parse
 from cdem.errors import CdemError
 from cdem.output.reader import read_histories, read_summary
 from cdem.run.energy_terms import ENERGY_TERMS
@@ -70,6 +71,32 @@ def departed(summary: dict[str, Any]) -> str:
         if not lost.get("dug_out")
     ]
     return f", but for {' and '.join(gone)} that left the domain" if gone else ""
+
+
+def case_facts(folder: Path) -> dict[str, Any]:
+    """What the picture of a run takes from its case.
+
+    Args:
+        folder: Result folder.
+
+    Returns:
+        `fixed`: groups that can never move; `north`: whether y points north, as in a case with a
+        map projection.
+    """
+    path = folder / "case.yaml"
+    try:
+        case = parse(_text(path), str(path))
+    except CdemError:
+        case = None
+    if not isinstance(case, dict):
+        return {"fixed": [], "north": False}
+    try:
+        driven = [entry.get("group") for entry in case["loads"]["velocities"]]
+        fixed = [name for name, group in case["groups"].items() if len(set(group["fix"])) == 3]
+    except (AttributeError, KeyError, TypeError):  # not as cdem writes it
+        driven = fixed = []
+    north = case.get("crs") is not None
+    return {"fixed": [name for name in fixed if name not in driven], "north": north}
 
 
 def page_facts(folder: Path) -> dict[str, Any]:
@@ -159,10 +186,11 @@ def _ended(s: dict[str, Any]) -> dict[str, Any]:
         [BROKEN, f"{broken['tension']:,} / {broken['shear']:,}", ""],
         ["wall time", _quantity(s["wall_time"], "s"), ""],
     ]
+    threads = f"{s['threads']} thread{'s' * (s['threads'] > 1)}"
     return {
         "status": s["status"],
         "tone": {"failed": "bad", "stopped": "doubt"}.get(s["status"], "good"),
-        "subtitle": f"cdem {s['version']} · {s['device']} · {s['threads']} threads{rested(s)}{moving(s)}{departed(s)}",
+        "subtitle": f"cdem {s['version']} · {s['device']} · {threads}{rested(s)}{moving(s)}{departed(s)}",
         "tiles": tiles,
         "tables": [_groups(s), *_stages(s), *_energies(energies)],
     }
