@@ -127,7 +127,7 @@ format: setup
 
 demo: dev
 	mkdir -p demo
-	$(BIN)/cdem new landslide demo --force
+	$(BIN)/cdem new landslide demo --overwrite
 	$(BIN)/cdem run demo/landslide.yaml -o demo/landslide.results --overwrite
 	$(BIN)/cdem plot demo/landslide.results
 	$(BIN)/cdem render demo/landslide.results

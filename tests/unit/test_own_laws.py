@@ -25,7 +25,7 @@ def folder(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     monkeypatch.delenv(own_laws.VARIABLE, raising=False)
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
-    new_law("my-clay", "block", tmp_path, force=False)
+    new_law("my-clay", "block", tmp_path, overwrite=False)
     (tmp_path / "case.yaml").write_text(flow(own_laws=f"[{HEADER}]"))
     return tmp_path
 
@@ -163,9 +163,9 @@ def test_headers(folder):
         with pytest.raises(CaseError, match=told):
             build([folder / "wrong.hpp"])
     with pytest.raises(CaseError, match="a law's name may only have small letters"):
-        new_law("MyClay", "block", folder, force=False)
+        new_law("MyClay", "block", folder, overwrite=False)
     with pytest.raises(CaseError, match="exists already"):
-        new_law("my-clay", "block", folder, force=False)
+        new_law("my-clay", "block", folder, overwrite=False)
 
 
 def test_a_build_without_its_tools_says_what_to_install(folder, monkeypatch):

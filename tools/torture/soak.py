@@ -79,7 +79,7 @@ def case_of(name: str, folder: Path) -> Path:
         case["loads"]["velocities"] = [{**SHAKE, "history": speed}]
     else:
         subprocess.run(
-            [sys.executable, "-m", "cdem", "new", name, str(folder), "--force"], check=True
+            [sys.executable, "-m", "cdem", "new", name, str(folder), "--overwrite"], check=True
         )
         case = yaml.load(path.read_text())
         case["stages"][-1]["duration"] = 1000

@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 
 import typer
 
-from cdem.cli.options import AllowCode, print_paths
+from cdem.cli.options import AllowCode, Force, Overwrite, print_paths
 from cdem.errors import CaseError
 
 law = typer.Typer(
@@ -40,12 +40,13 @@ def new(
     folder: Annotated[Path, typer.Argument(metavar="[DIR]", help="Folder to write to.")] = Path(
         "."
     ),
-    force: Annotated[bool, typer.Option("--force", help="Replace files that exist.")] = False,
+    overwrite: Overwrite = False,
+    force: Force = False,
 ) -> None:
     """Write the header of a law of your own to start from, and a test for it."""
     from cdem.tools.law_build import new_law
 
-    paths = new_law(name, kind, folder, force=force)
+    paths = new_law(name, kind, folder, overwrite=overwrite or force)
     print_paths(paths)
     print(f"next: cdem law build {paths[0]}")
 

@@ -11,7 +11,16 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
-from cdem.cli.options import AllowCode, CaseFile, Settings, Strict, Threads, allow_own_laws
+from cdem.cli.options import (
+    AllowCode,
+    CaseFile,
+    Force,
+    Overwrite,
+    Settings,
+    Strict,
+    Threads,
+    allow_own_laws,
+)
 from cdem.errors import BodyError, CaseError
 
 if TYPE_CHECKING:
@@ -29,7 +38,8 @@ def new(
     folder: Annotated[Path, typer.Argument(metavar="[DIR]", help="Folder to write to.")] = Path(
         "."
     ),
-    force: Annotated[bool, typer.Option("--force", help="Replace files that exist.")] = False,
+    overwrite: Overwrite = False,
+    force: Force = False,
 ) -> None:
     """Write a commented case to start from."""
     home = resources.files("cdem") / "templates"
@@ -48,9 +58,9 @@ def new(
     own = list((home / template).iterdir()) if (home / template).is_dir() else _meshes(home)
     files = [case, *(f for f in own if f.name != case.name and f.name in beside)]
     for file in files:
-        if (folder / file.name).exists() and not force:
+        if (folder / file.name).exists() and not (overwrite or force):
             raise CaseError(
-                f"{folder / file.name}: exists already; use --force or name another folder"
+                f"{folder / file.name}: exists already; use --overwrite or name another folder"
             )
     folder.mkdir(parents=True, exist_ok=True)
     for file in files:

@@ -23,6 +23,18 @@ Settings = Annotated[
 Threads = Annotated[int | None, typer.Option(min=1, help="Threads; default all cores.")]
 AsJson = Annotated[bool, typer.Option("--json", help="Print JSON instead.")]
 
+Overwrite = Annotated[bool, typer.Option("--overwrite", help="Replace files that exist.")]
+
+
+def _tell_of_overwrite(force: bool) -> bool:
+    """Accept the earlier name of `--overwrite`, and tell the present one."""
+    if force:
+        print("warning: --force is now --overwrite; the next version refuses it", file=sys.stderr)
+    return force
+
+
+Force = Annotated[bool, typer.Option("--force", hidden=True, callback=_tell_of_overwrite)]
+
 AllowCode = Annotated[
     bool,
     typer.Option("--allow-code", help="Run the code of own_laws; read it first."),

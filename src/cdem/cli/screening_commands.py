@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from cdem.cli.options import print_paths, stop_on_signal
+from cdem.cli.options import Force, Overwrite, print_paths, stop_on_signal
 from cdem.errors import CaseError, CdemError
 
 GRAVITY = 9.81
@@ -56,7 +56,8 @@ def joints(
         float | None,
         typer.Option(metavar="M", help="Length of all scanlines; default from the joints."),
     ] = None,
-    force: Annotated[bool, typer.Option("--force", help="Replace sets that exist.")] = False,
+    overwrite: Overwrite = False,
+    force: Force = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
 ) -> None:
     """Find the sets among measured joints, and joints that may slide or topple on a slope."""
@@ -70,8 +71,8 @@ def joints(
     path = output or Path(f"{table.stem}.yaml")
     if path.suffix not in (".yaml", ".yml"):
         raise typer.BadParameter(f"the sets are written as YAML: name a .yaml file, not {path}")
-    if path.exists() and not force:  # a user may have edited its strengths
-        raise CaseError(f"{path}: exists already; use --force or name another file with -o")
+    if path.exists() and not (overwrite or force):  # a user may have edited its strengths
+        raise CaseError(f"{path}: exists already; use --overwrite or name another file with -o")
     measured = read_measured(table, along)
     survey = Survey.of(table, measured, count=sets, length=length, slope=face)
     written = _write_survey(survey, path)

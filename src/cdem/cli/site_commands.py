@@ -8,6 +8,7 @@ from typing import Annotated, Any, Literal
 
 import typer
 
+from cdem.cli.options import Force, Overwrite
 from cdem.errors import BackendError, CaseError
 
 Text = str | None
@@ -76,15 +77,16 @@ def site(
         bool, typer.Option("--all-points", help="Use all points of a cloud, not only the ground.")
     ] = False,
     cut: Annotated[bool, typer.Option("--cut", help="Cut the outline at the DEM's edge.")] = False,
-    force: Annotated[bool, typer.Option("--force", help="Replace files that exist.")] = False,
+    overwrite: Overwrite = False,
+    force: Force = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
 ) -> None:
     """Read a DEM and an outline; write a landslide and a case to start from."""
     from cdem.terrain import site as making
 
-    if (output / "landslide.yaml").exists() and not force:
+    if (output / "landslide.yaml").exists() and not (overwrite or force):
         raise CaseError(
-            f"{output / 'landslide.yaml'}: exists already; use --force or another --output"
+            f"{output / 'landslide.yaml'}: exists already; use --overwrite or another --output"
         )
     question = making.Question(
         dem, outline, output,
@@ -147,7 +149,7 @@ def _text(found: Any, folder: Path) -> str:
         return "\n".join(
             [
                 *lines,
-                "  choose a sliding surface: repeat with --force and --depth, --volume or --surface",
+                "  choose a sliding surface: repeat with --overwrite and --depth, --volume or --surface",
             ]
         )
     between = site_files.between_text(f["factor"])

@@ -6,7 +6,8 @@ compressed by gzip. `unpack` of the page's run.js reads it.
 - Positions are whole numbers in the box of the frames. A frame holds the second difference in time
   and its difference from node to node, folded so that small values are small numbers (zigzag),
   low bytes before high bytes.
-- Amounts are bytes relative to their largest value, labels are numbers; a frame holds differences.
+- Amounts are bytes of the root of their share of the largest value, so that small amounts keep
+  their order on a logarithmic scale; labels are numbers; a frame holds differences.
 - Rows that a frame lacks keep their last value, or have their first value in advance: no
 difference.
 """
@@ -205,11 +206,11 @@ def _hold(moving: MovingSurface, surface_of: SurfaceOf, frames: NDArray[np.int64
 
 
 def _bytes(values: NDArray, high: float | None) -> NDArray[np.uint8]:
-    """Amounts relative to the largest; labels unchanged."""
+    """Roots of amounts relative to the largest; labels unchanged."""
     if high is None:
         return np.clip(values, 0, 255).astype(np.uint8)
     part = np.nan_to_num(values / high, nan=0.0, posinf=1.0, neginf=0.0)
-    return np.round(255 * part.clip(0, 1)).astype(np.uint8)
+    return np.round(255 * np.sqrt(part.clip(0, 1))).astype(np.uint8)
 
 
 def _coarse(place: NDArray[np.uint16], bits: int) -> NDArray[np.uint16]:

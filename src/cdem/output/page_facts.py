@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import shlex
 from pathlib import Path
 from typing import Any
@@ -10,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from cdem._version import __version__
+from cdem.case.yaml_text import parse
 from cdem.errors import CdemError
 from cdem.output.reader import read_histories, read_summary
 from cdem.run.energy_terms import ENERGY_TERMS
@@ -70,6 +72,38 @@ def departed(summary: dict[str, Any]) -> str:
         if not lost.get("dug_out")
     ]
     return f", but for {' and '.join(gone)} that left the domain" if gone else ""
+
+
+def case_facts(folder: Path) -> dict[str, Any]:
+    """What the picture of a run takes from its case.
+
+    Args:
+        folder: Result folder.
+
+    Returns:
+        `fixed`: groups that can never move; `north`: whether y points north, as in a case with a
+        map projection.
+    """
+    path = folder / "case.yaml"
+    try:
+        case = parse(_part(_text(path), ("crs", "groups", "loads")), str(path))
+    except CdemError:
+        case = None
+    if not isinstance(case, dict):
+        return {"fixed": [], "north": False}
+    try:
+        driven = [entry.get("group") for entry in case["loads"]["velocities"]]
+        fixed = [name for name, group in case["groups"].items() if len(set(group["fix"])) == 3]
+    except (AttributeError, KeyError, TypeError):  # not as cdem writes it
+        driven = fixed = []
+    north = case.get("crs") is not None
+    return {"fixed": [name for name in fixed if name not in driven], "north": north}
+
+
+def _part(case: str, keys: tuple[str, ...]) -> str:
+    """The text of some entries of a case; those of its blocks take ten times as long to parse."""
+    entries = re.split(r"^(?=\S)", case, flags=re.MULTILINE)
+    return "".join(entry for entry in entries if entry.partition(":")[0] in keys)
 
 
 def page_facts(folder: Path) -> dict[str, Any]:
@@ -159,10 +193,11 @@ def _ended(s: dict[str, Any]) -> dict[str, Any]:
         [BROKEN, f"{broken['tension']:,} / {broken['shear']:,}", ""],
         ["wall time", _quantity(s["wall_time"], "s"), ""],
     ]
+    threads = f"{s['threads']} thread{'s' * (s['threads'] > 1)}"
     return {
         "status": s["status"],
         "tone": {"failed": "bad", "stopped": "doubt"}.get(s["status"], "good"),
-        "subtitle": f"cdem {s['version']} · {s['device']} · {s['threads']} threads{rested(s)}{moving(s)}{departed(s)}",
+        "subtitle": f"cdem {s['version']} · {s['device']} · {threads}{rested(s)}{moving(s)}{departed(s)}",
         "tiles": tiles,
         "tables": [_groups(s), *_stages(s), *_energies(energies)],
     }

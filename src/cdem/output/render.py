@@ -17,6 +17,7 @@ from cdem.case.output_fields import CARRIED
 from cdem.case.shown_fields import AXIAL_FORCE, SHOWN
 from cdem.errors import CdemError
 from cdem.output.cuts import Cuts, Plane
+from cdem.output.page_facts import case_facts
 from cdem.output.painter import Frames, Painter
 from cdem.output.reader import FrameSeries, Surface, SurfaceSeries
 
@@ -103,7 +104,7 @@ def render(
     folder = Path(folder)
     pyvista = load_pyvista()
     frames = _frames(folder, field, cut)
-    scene = Painter(pyvista, frames, field, north=_has_north(folder), occlusion=True)
+    scene = Painter(pyvista, frames, field, north=case_facts(folder)["north"], occlusion=True)
     stem = field if cut is None else f"{field}-{cut.replace(' ', '')}"
     last = len(frames) - 1
     if before_after:
@@ -126,15 +127,6 @@ def render(
         scene.occlusion = False
         paths.append(_write_movie(folder / f"{stem}.gif", scene, frames))
     return paths
-
-
-def _has_north(folder: Path) -> bool:
-    """Whether y of a run points north: its case names a map projection."""
-    from cdem.case.yaml_text import parse
-
-    path = folder / "case.yaml"
-    case = parse(path.read_text(encoding="utf-8"), str(path)) if path.is_file() else {}
-    return isinstance(case, dict) and case.get("crs") is not None
 
 
 def _frames(folder: Path, field: str, cut: str | None) -> _Carried | Cuts:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import hashlib
+import secrets
 from importlib import resources
 from pathlib import Path
 from typing import Any
@@ -16,7 +17,7 @@ from cdem._version import __version__
 from cdem.errors import CdemError
 from cdem.output.moving_surface import MovingSurface
 from cdem.output.pack import Pack, put_frames
-from cdem.output.page_facts import is_over, page_facts
+from cdem.output.page_facts import case_facts, is_over, page_facts
 from cdem.output.reader import FrameSeries, Surface, SurfaceSeries, read_histories
 from cdem.run.frame_files import frame_numbers
 
@@ -41,6 +42,7 @@ class RunPage:
 
     def _begin(self) -> None:
         self._run = self.run_id()
+        self._of_case = case_facts(self.folder)
         self._moving = MovingSurface()
         self._surfaces: SurfaceSeries | None = None
         self._volumes: dict[float, int] = {}
@@ -98,12 +100,14 @@ class RunPage:
         Args:
             budget: Largest size of the page [bytes].
         """
-        room = (budget - len(self.html("-").encode())) * 3 // 4
+        place = secrets.token_hex()
+        before, after = self.html(place).split(place)
+        room = (budget - len((before + after).encode())) * 3 // 4
         data = self.pack(0, 0, room)
         for part in (0.96, 0.9, 0.7):  # the size of frames is an estimate
             if len(data) > room:
                 data = self.pack(0, 0, int(part * room))
-        return self.html(base64.b64encode(data).decode())
+        return f"{before}{base64.b64encode(data).decode()}{after}"
 
     def pack(self, frames: int, rows: int, budget: int) -> bytes:
         """Frames and rows of the histories that are new to a client, and all texts.
@@ -114,7 +118,7 @@ class RunPage:
         """
         if self._run != self.run_id():
             self._begin()
-        facts = page_facts(self.folder) | {"run": self._run}
+        facts = page_facts(self.folder) | self._of_case | {"run": self._run}
         pack = Pack({"facts": facts})
         facts["leftOut"] += self._put_histories(pack, rows)
         self._look()

@@ -27,6 +27,7 @@ from cdem.run.checkpoint import has_checkpoint
 from cdem.run.fast_weakening import FastWeakening, fast_weakenings
 from cdem.run.flow_recorder import PREFIX, FlowRecorder
 from cdem.run.law_fields import large_strains, yielded_counts
+from cdem.run.notebook import watched
 from cdem.run.progress import Progress
 from cdem.run.stage_state import StageState
 from cdem.run.state import Attributes, RunState, Setting
@@ -147,7 +148,7 @@ class Simulation(RunState):
         """Run all remaining stages.
 
         Args:
-            progress: Called a few times per second.
+            progress: Called a few times per second; by default a notebook shows a line.
             should_stop: Called as often; True stops the run with a checkpoint.
 
         Returns:
@@ -161,7 +162,8 @@ class Simulation(RunState):
         if self.results:
             self.results.hold()
         try:
-            return self._run(progress, should_stop)
+            with watched(progress) as show:
+                return self._run(show, should_stop)
         except DiskError as error:
             raise self._with_advice(error) from error
         finally:

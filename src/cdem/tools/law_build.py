@@ -96,14 +96,14 @@ class Header:
         return cls(path.resolve(), structure, law, kinds[0])
 
 
-def new_law(name: str, kind: str, folder: Path, *, force: bool) -> list[Path]:
+def new_law(name: str, kind: str, folder: Path, *, overwrite: bool) -> list[Path]:
     """Write a header to start from, and a test for it.
 
     Args:
         name: Name of the law, e.g. ``"my-clay"``.
         kind: "block", "interface" or "surface".
         folder: Folder to write to.
-        force: Whether to replace existing files.
+        overwrite: Whether to replace existing files.
 
     Raises:
         CaseError: The name is invalid, or a file exists.
@@ -122,8 +122,8 @@ def new_law(name: str, kind: str, folder: Path, *, force: bool) -> list[Path]:
         text = re.sub(rf"\b{structure}\b", name.title().replace("-", ""), text)
         texts[folder / file] = re.sub(rf"(?<![\w-]){own}(?![\w-])", name, text)
     for path in texts:
-        if path.exists() and not force:
-            raise CaseError(f"{path}: exists already; use --force or name another folder")
+        if path.exists() and not overwrite:
+            raise CaseError(f"{path}: exists already; use --overwrite or name another folder")
     folder.mkdir(parents=True, exist_ok=True)
     for path, text in texts.items():
         path.write_text(text)

@@ -60,5 +60,5 @@ def test_mistakes_are_one_message(run_cli, table):
     )
     (table / "joints.yaml").write_text("edited by hand")
     status, _, err = run_cli("joints", "joints.csv")
-    assert status == 1 and err.startswith("joints.yaml: exists already; use --force")
-    assert run_cli("joints", "joints.csv", "--force")[0] == 0
+    assert status == 1 and err.startswith("joints.yaml: exists already; use --overwrite")
+    assert run_cli("joints", "joints.csv", "--overwrite")[0] == 0

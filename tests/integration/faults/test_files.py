@@ -102,7 +102,7 @@ def feet(tmp_path, monkeypatch):
     return tmp_path
 
 
-WORDS = ["--depth", "20 m", "--crs", "EPSG:32613", "--force", "--json"]
+WORDS = ["--depth", "20 m", "--crs", "EPSG:32613", "--overwrite", "--json"]
 
 
 @pytest.mark.usefixtures("feet")

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import os
+import re
 import shutil
+from functools import partial
 from pathlib import Path
 
 import pytest
@@ -49,14 +51,15 @@ def folder(tmp_path_factory):
 
 def now(folder: Path, frame: int) -> str:
     """What the page says of the time of a frame."""
-    return f"{cdem.open(folder).times[frame]:.3f} s"
+    return f"{cdem.open(folder).times[frame]:.3f}"
 
 
 class Page:
     """A page, what it asks for, and what goes wrong in it."""
 
     def __init__(self, browser, address: str, **options) -> None:
-        self.context = browser.new_context(viewport={"width": 1000, "height": 700}, **options)
+        size = {"viewport": {"width": 1000, "height": 700}}
+        self.context = browser.new_context(**size | options)
         self.page = self.context.new_page()
         self.asked, self.wrong = [], []
         self.page.on("request", lambda request: self.asked.append(request.url))
@@ -79,6 +82,10 @@ class Page:
             [name, value],
         )
 
+    def time(self) -> str:
+        """The time that the page says."""
+        return self.page.input_value("#now")
+
     def picture(self) -> bytes:
         """The pixels of the moving picture, once it is drawn; nothing else."""
         return self.page.evaluate(
@@ -92,14 +99,14 @@ def test_a_report_moves_and_asks_for_nothing(browser, folder):
     with Page(browser, address, offline=True) as page:
         shown = page.page.inner_text
         assert (shown("h1"), shown("#status")) == ("A <fall>", "finished")
-        assert shown("#now") == now(folder, -1)
+        assert page.time() == now(folder, -1)
         end = page.picture()
         page.set("slider", "0")
         start = page.picture()
         page.set("slider", "1.5")
         between = page.picture()
         times = cdem.open(folder).times
-        assert float(shown("#now").split()[0]) == pytest.approx(times[1:3].mean(), abs=1e-3)
+        assert float(page.time()) == pytest.approx(times[1:3].mean(), abs=1e-3)
         assert len({start, between, end}) == 3
         page.set("field", "group")
         assert page.picture() != between and "chip" in shown("#ticks")
@@ -125,12 +132,10 @@ def test_each_control_changes_the_picture_and_back(browser, folder):
         page.page.keyboard.press("Home")
         page.page.keyboard.press("ArrowRight")
         page.picture()
-        assert page.page.inner_text("#now") == now(folder, 1)
+        assert page.time() == now(folder, 1)
         with page.page.expect_download() as saved:
             page.page.click("#save")
-        assert (
-            saved.value.suggested_filename == f"displacement-{now(folder, 1).replace(' ', '')}.png"
-        )
+        assert saved.value.suggested_filename == f"displacement-{now(folder, 1)}s.png"
         assert page.wrong == []
 
 
@@ -163,6 +168,117 @@ def test_on_a_phone_legend_and_scale_lie_apart(browser, folder):
         assert page.page.evaluate("document.documentElement.scrollWidth") == 390
 
 
+def test_colours_have_the_typed_range_and_a_logarithmic_scale(browser, folder):
+    with Page(browser, report(folder).resolve().as_uri(), offline=True) as page:
+        ticks = partial(page.page.inner_text, "#ticks")
+        automatic, told, most = (
+            page.picture(),
+            ticks(),
+            page.page.get_attribute("#high", "placeholder"),
+        )
+        assert page.page.is_disabled("#automatic")
+        page.set(
+            "high", f"{float(most) / 2:g}".replace(".", ",")
+        )  # a comma, as many people type it
+        half, shown = page.picture(), ticks()
+        assert half != automatic and shown != told
+        page.set("low", most)  # above the other end: it is marked, and changes nothing
+        assert page.page.get_attribute("#low", "aria-invalid") == "true"
+        assert (page.picture(), ticks()) == (half, shown)
+        page.page.click("#automatic")
+        assert (page.picture(), ticks(), page.page.input_value("#high")) == (automatic, told, "")
+        page.page.check("#logarithmic")
+        place = "e => [...e.children].map((t) => [Number(t.innerText), parseFloat(t.style.left)])"
+        (a, at), (b, bt), (c, ct) = page.page.eval_on_selector("#ticks", place)[-3:]
+        assert b / a == pytest.approx(c / b) and bt - at == pytest.approx(ct - bt)
+        assert page.picture() != automatic and ", log" in page.page.inner_text("#legend-name")
+        page.set("field", "velocity")  # each field has its own
+        assert not page.page.is_checked("#logarithmic")
+        page.set("field", "displacement")
+        page.page.uncheck("#logarithmic")
+        assert page.picture() == automatic and page.wrong == []
+
+
+def test_a_typed_time_goes_to_the_next_frame(browser, folder):
+    times = cdem.open(folder).times
+    with Page(browser, report(folder).resolve().as_uri(), offline=True) as page:
+        for typed, frame in (
+            (f"{0.6 * times[1] + 0.4 * times[2]:.4f}", 1), ("0,16 s", 3), ("99", -1), ("soon", -1),
+        ):  # fmt: skip
+            page.page.fill("#now", typed)
+            page.page.press("#now", "Enter")
+            page.picture()
+            assert page.time() == now(folder, frame)
+        assert page.wrong == []
+
+
+def test_fixed_rock_is_grey_without_edges_until_asked(browser, tmp_path):
+    data = case(BLOCKS, {"box": {"fix": ["x", "y", "z"]}, "chip": {}}, rock={"young_modulus": "1 MPa"},
+                loads={"gravity": [0, 0, -10]}, crs="EPSG:32632",
+                stages=[{"name": "fall", "mode": "dynamic", "duration": 0.02}])  # fmt: skip
+    cdem.Simulation(data, threads=1, output=tmp_path / "r").run()
+    with Page(browser, report(tmp_path / "r").resolve().as_uri(), offline=True) as page:
+        page.page.click("#groups input >> nth=1")  # only the fixed box is left
+        page.page.uncheck("#lines")
+        plain = page.picture()
+        for name in ("velocity", "block"):
+            page.set("field", name)
+            assert page.picture() == plain
+        page.page.check("#fixed-lines")
+        assert page.picture() != plain
+        page.page.uncheck("#fixed-lines")
+        page.set("field", "group")
+        assert page.picture() != plain and page.wrong == []
+
+
+def test_a_map_has_a_north_arrow_in_place_of_axes(browser, folder, tmp_path):
+    shutil.copytree(folder, tmp_path / "map")
+    with (tmp_path / "map/case.yaml").open("a") as file:
+        file.write("crs: EPSG:32632\n")
+    red = """() => { const c = document.getElementById("hud"), d = c.getContext("2d");
+        const p = d.getImageData(c.width - 116, 0, 116, 116).data, of = [0, 0];
+        for (let k = 0; k < p.length; k += 4)
+          if (p[k + 3] > 200) of[p[k] > p[k + 1] + 60 && p[k] > p[k + 2] + 60 ? 0 : 1] += 1;
+        return of; }"""
+    drawn = []
+    for path in (folder, tmp_path / "map"):
+        with Page(browser, report(path).resolve().as_uri(), offline=True) as page:
+            page.picture()
+            drawn.append(page.page.evaluate(red))
+            assert page.wrong == []
+    assert drawn[0][0] > 20 and drawn[1][0] == 0 and drawn[1][1] > 100  # x is red, no part of N is
+
+
+def test_a_page_says_that_it_loads(browser, folder):
+    with served(folder) as server:
+        page = browser.new_page()
+        held = []
+        page.route("**/data?*", lambda route: held.append(route))
+        page.goto(server.address)
+        page.wait_for_selector("#loading:visible")
+        held[0].continue_()
+        page.wait_for_selector("body[data-ready]")
+        assert not page.is_visible("#loading")
+        page.close()
+
+
+def test_a_phone_shows_all_of_the_page_and_its_tables(browser, folder):
+    address = report(folder).resolve().as_uri()
+    size = {"width": 390, "height": 844}
+    for look in ("light", "dark"):
+        with Page(browser, address, offline=True, color_scheme=look, viewport=size) as page:
+            wide = (
+                "e => [document.documentElement, ...document.querySelectorAll('.card, #controls')]"
+            )
+            wide += ".map((part) => part.scrollWidth - part.clientWidth)"
+            assert not any(page.page.evaluate(wide))
+            seen = "e => { const b = getComputedStyle(document.body); return [b.color, b.backgroundColor]; }"
+            ink, paper = (
+                sum(map(int, re.findall(r"\d+", text)[:3])) for text in page.page.evaluate(seen)
+            )
+            assert abs(ink - paper) > 500 and (ink > paper) == (look == "dark")
+
+
 def test_a_page_follows_a_run_that_goes_on(browser, folder, tmp_path):
     growing = tmp_path / "growing.results"
 
@@ -175,12 +291,12 @@ def test_a_page_follows_a_run_that_goes_on(browser, folder, tmp_path):
     shutil.copytree(folder, growing, ignore=shutil.ignore_patterns("frame-*", "summary.json"))
     grow(0, 2)
     with served(growing) as server, Page(browser, server.address) as page:
-        assert page.page.inner_text("#now") == now(folder, 1)
+        assert page.time() == now(folder, 1)
         page.set("field", "velocity")
         before = page.picture()
         grow(2, 4)
         page.page.wait_for_selector("#slider[max='3']")
-        assert page.picture() != before and page.page.inner_text("#now") == now(folder, 3)
+        assert page.picture() != before and page.time() == now(folder, 3)
         grow(4, len(cdem.open(folder)))
         shutil.copy(folder / "summary.json", growing)
         page.page.wait_for_selector("#status.good")
@@ -199,5 +315,5 @@ def test_what_a_notebook_shows_moves_too(browser, folder, tmp_path):
     page.goto((tmp_path / "cell.html").as_uri())
     inside = page.frame_locator("iframe")
     inside.locator("body[data-ready]").wait_for()
-    assert inside.locator("#now").inner_text() == now(folder, -1)
+    assert inside.locator("#now").input_value() == now(folder, -1)
     context.close()

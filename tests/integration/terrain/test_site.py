@@ -87,12 +87,15 @@ def test_factor_volume_and_words_agree_with_the_mesh(maps):
 def test_without_a_surface_it_writes_the_ground_and_asks(maps, run_cli):
     status, out, _ = run_cli("site", "dem.tif", "outline.kml")
     assert status == 0
-    assert "choose a sliding surface: repeat with --force and --depth, --volume or --surface" in out
+    assert (
+        "choose a sliding surface: repeat with --overwrite and --depth, --volume or --surface"
+        in out
+    )
     assert not (maps / "site" / "case.yaml").exists()
     landslide = Landslide.load(maps / "site" / "landslide.yaml")
     assert landslide.bodies == []
     status, out, _ = run_cli(
-        "site", "dem.tif", "outline.kml", "--force", "--volume", "1e6", "--json"
+        "site", "dem.tif", "outline.kml", "--overwrite", "--volume", "1e6", "--json"
     )
     assert json.loads(out)["volume"] == pytest.approx(1e6, rel=2e-3)
 

@@ -48,8 +48,8 @@ def test_new_lists_and_writes_templates(run_cli, cube_folder):
     assert all((cube_folder / "cases" / file).exists() for file in ("slope.msh", "valley.asc"))
     status, _, err = run_cli("new", "incline", "cases")
     assert status == 1
-    assert "cases/incline.yaml: exists already; use --force" in err
-    assert run_cli("new", "incline", "cases", "--force")[0] == 0
+    assert "cases/incline.yaml: exists already; use --overwrite" in err
+    assert run_cli("new", "incline", "cases", "--overwrite")[0] == 0
     assert "did you mean incline?" in run_cli("new", "inclin")[2]
 
 

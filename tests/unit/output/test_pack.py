@@ -66,10 +66,24 @@ def test_positions_come_back_to_half_a_step():
     assert header["step"] == pytest.approx((moving().highest - moving().lowest).max() / 65535)
 
 
-def test_fields_come_back_to_half_a_step_of_255():
+def test_roots_of_fields_come_back_to_half_a_step_of_255():
     header, arrays, _ = packed()
     values = np.cumsum(arrays["field.damage"].reshape(4, -1), axis=0, dtype=np.uint8)
-    assert values[3] / 255 * header["high"]["damage"] == pytest.approx([0, 0.5, 1], abs=0.002)
+    root = np.sqrt(header["high"]["damage"])
+    assert values[3] / 255 * root == pytest.approx(np.sqrt([0, 0.5, 1]), abs=0.002)
+
+
+def test_amounts_over_four_powers_of_ten_stay_apart():
+    few = surface(3)
+    few.cell_data["damage"] = np.array([1e-4, 1e-3, 1.0])
+    found, pack = MovingSurface(), Pack({})
+    found.add(few)
+    put_frames(pack, found, lambda _: (few, None), 0, ROOMY)
+    header, arrays = read(pack.compressed())
+    amounts = (arrays["field.damage"] / 255) ** 2 * header["high"]["damage"]
+    low, middle, high = sorted(amounts)
+    assert low == pytest.approx(1e-4, rel=0.4) and middle == pytest.approx(1e-3, rel=0.1)
+    assert high == 1.0
 
 
 def test_quadrilaterals_are_two_triangles_without_the_diagonal():

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from cdem.output.page_facts import is_over, page_facts
+from cdem.output.page_facts import case_facts, is_over, page_facts
 
 HISTORIES = "time [s],step,energy error,broken tension,broken shear\n0,0,0,0,0\n2.5,40,2e-2,3,1\n"
 SUMMARY = {
@@ -47,3 +47,31 @@ def test_a_run_that_failed(folder):
 def test_a_run_that_was_resumed_is_not_over(folder):
     (folder / "summary.json").write_text(json.dumps(SUMMARY | {"steps": 39}))
     assert not is_over(folder) and page_facts(folder)["tone"] == "live"
+
+
+CASE = """crs: EPSG:32632
+groups:
+  bedrock: {fix: [x, y, z]}
+  plate: {fix: [x, y, z]}
+  wall: {fix: [x, y]}
+  body: {fix: []}
+loads:
+  velocities:
+  - {group: plate, velocity: [1, 0, 0]}
+"""
+
+
+def test_fixed_rock_is_that_which_nothing_moves_and_a_map_points_north(folder):
+    (folder / "case.yaml").write_text(CASE)
+    assert case_facts(folder) == {"fixed": ["bedrock"], "north": True}
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["", "groups: [bedrock]", "groups: {bedrock: 3}", "- 1", "a: [", "loads: {velocities: 3}"],
+)
+def test_a_case_that_cdem_did_not_write_has_no_fixed_rock(folder, text):
+    (folder / "case.yaml").write_text(text)
+    assert case_facts(folder) == {"fixed": [], "north": False}
+    (folder / "case.yaml").unlink()
+    assert case_facts(folder) == {"fixed": [], "north": False}

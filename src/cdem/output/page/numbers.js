@@ -26,6 +26,12 @@ function scaled(largest, unit) {
   return { factor, unit: prefix + unit };
 }
 
+// A number as people type it, with a comma or a point; NaN for other text.
+function typed(text) {
+  const trimmed = text.trim().replace(",", ".");
+  return trimmed ? Number(trimmed) : NaN;
+}
+
 // The largest of 1, 2, 5 times a power of ten that is not above a value.
 function roundDown(value) {
   const power = 10 ** Math.floor(Math.log10(value) + 1e-9);
@@ -38,4 +44,13 @@ function ticks(low, high, count) {
   const found = [];
   for (let k = Math.ceil(low / step - 1e-6); k * step <= high + 1e-6 * step; k++) found.push(k * step);
   return found;
+}
+
+// Round numbers on a logarithmic scale: powers of ten, or also 2 and 5 times them if these are few.
+function logTicks(low, high) {
+  const found = [], few = high / low < 100, first = Math.floor(Math.log10(low) + 1e-9);
+  const last = Math.floor(Math.log10(high) + 1e-9), every = Math.ceil((last - first) / 5) || 1;
+  for (let power = first; power <= last; power += every)
+    for (const k of few ? [1, 2, 5] : [1]) found.push(Number(`${k}e${power}`));
+  return found.filter((v) => v >= low * (1 - 1e-6) && v <= high * (1 + 1e-6));
 }

@@ -2,9 +2,12 @@
 // Texts of a case are put in as text only, never as HTML.
 
 const by = (id) => document.getElementById(id);
+const DARK = matchMedia("(prefers-color-scheme: dark)");
 const LOOK_SECONDS = 2; // between two looks for new frames
+const AXES = { light: ["#cc3311", "#228833", "#0077bb"], dark: ["#ff8468", "#5cc46e", "#62b4ff"] };
 const LOST_AFTER = 3; // looks that get no answer
 const PLAY_SECONDS = 8; // that all frames take
+const LOG_RANGE = 1000; // highest over lowest value of an automatic logarithmic scale
 
 class Page {
   constructor(run, source) {
@@ -14,7 +17,7 @@ class Page {
     this.playing = false;
     this.dirty = true;
     this.mapBytes = bytesOfMap("viridis");
-    this.plots = [];
+    this.ranges = new Map(); // that were typed, by name of the field
     this.showFacts();
     this.setUpPlots();
     if (run.times.length) this.begin();
@@ -65,7 +68,11 @@ class Page {
       for (const text of cells) row.append(Object.assign(document.createElement(kind), { textContent: text }));
       return row;
     };
-    if (head.length) table.append(line(head, "th"));
+    if (head.length) {
+      table.className = "columns";
+      table.style.setProperty("--columns", head.length - 1);
+      table.append(line(head, "th"));
+    }
     table.append(...rows.map((row) => line(row, "td")));
     card.append(heading, table);
     return card;
@@ -113,6 +120,13 @@ class Page {
     by("slider").max = this.last;
     by("slider").addEventListener("input", () => { this.play(false); this.seek(Number(by("slider").value)); });
     by("play").addEventListener("click", () => this.play(!this.playing));
+    by("now").addEventListener("focus", () => by("now").select());
+    by("now").addEventListener("change", () => {
+      const time = typed(by("now").value.replace(/s\s*$/, ""));
+      by("now").blur();
+      this.play(false);
+      this.seek(Number.isFinite(time) ? this.run.nearest(time) : this.frame);
+    });
   }
 
   play(on) {
@@ -132,6 +146,11 @@ class Page {
       this.setField();
     });
     by("least").addEventListener("input", () => this.setLeast());
+    for (const id of ["low", "high", "logarithmic"]) by(id).addEventListener("change", () => this.readRange());
+    by("automatic").addEventListener("click", () => {
+      by("low").value = by("high").value = "";
+      this.readRange();
+    });
   }
 
   // Offer the fields; the one that is shown stays.
@@ -145,10 +164,59 @@ class Page {
   setField() {
     this.field = this.run.fields.find((f) => f.name === by("field").value);
     this.picture.look.field = this.field;
-    by("map").disabled = this.field.kind !== "amount";
-    by("least-row").hidden = this.field.kind !== "amount";
+    const amount = this.field.kind === "amount";
+    by("map").disabled = !amount;
+    by("range-row").hidden = by("least-row").hidden = !amount;
+    this.showRange();
     this.setLegend();
     this.setLeast();
+  }
+
+  // The ends of the colours for what was typed: what is missing is automatic.
+  ends({ low, high, logarithmic }) {
+    const last = high ?? this.field.top;
+    return [low ?? (logarithmic ? last / LOG_RANGE : 0), last];
+  }
+
+  // Take over what was typed, unless no colours could lie between it.
+  readRange() {
+    const { factor } = scaled(this.field.top, this.field.unit), range = { logarithmic: by("logarithmic").checked };
+    for (const id of ["low", "high"]) if (by(id).value.trim()) range[id] = typed(by(id).value) * factor;
+    if (range.logarithmic && range.low <= 0) {
+      delete range.low;
+      by("low").value = "";
+    }
+    const [low, high] = this.ends(range), good = low < high && high - low < Infinity;
+    for (const id of ["low", "high"]) by(id).ariaInvalid = String(!good);
+    if (!good) return;
+    this.ranges.set(this.field.name, range);
+    this.showRange();
+    this.setLegend();
+  }
+
+  showRange() {
+    const { top, unit } = this.field, inUnit = scaled(top, unit), { look } = this.picture;
+    const range = this.ranges.get(this.field.name) ?? {};
+    look.span = this.ends(range);
+    look.logarithmic = by("logarithmic").checked = Boolean(range.logarithmic);
+    ["low", "high"].forEach((id, k) => {
+      if (document.activeElement !== by(id)) by(id).value = id in range ? String(Number((range[id] / inUnit.factor).toPrecision(9))) : "";
+      by(id).placeholder = digits(look.span[k] / inUnit.factor, 3);
+      by(id).ariaInvalid = "false";
+      by(id).title = unit === "1" ? "" : `in ${inUnit.unit}`;
+    });
+    by("automatic").disabled = !("low" in range || "high" in range);
+    this.dirty = true;
+  }
+
+  // Numbers along the bar of colours, and how far each lies along it.
+  marks() {
+    const { logarithmic, span } = this.picture.look, { factor } = scaled(this.field.top, this.field.unit);
+    const [low, high] = span.map((value) => value / factor);
+    const values = logarithmic ? logTicks(low, high) : ticks(low, high, 4);
+    const part = (v) => (logarithmic ? Math.log(v / low) / Math.log(high / low) : (v - low) / (high - low));
+    const every = Math.ceil(values.length / 7);
+    return values.filter((_, k) => k % every === 0).map((v) => ({ text: digits(v), part: part(v) }));
   }
 
   setLeast() {
@@ -163,7 +231,7 @@ class Page {
   setLegend() {
     const { label, kind, unit, top, labels } = this.field, inUnit = scaled(top, unit);
     const shown = unit && unit !== "1" ? document.createElement("span") : "";
-    if (shown) shown.textContent = ` [${inUnit.unit}]`;
+    if (shown) shown.textContent = ` [${inUnit.unit}]${this.picture.look.logarithmic ? ", log" : ""}`;
     by("legend-name").replaceChildren(label, shown);
     by("bar").hidden = kind !== "amount";
     by("ticks").className = kind === "amount" ? "" : "names";
@@ -177,9 +245,9 @@ class Page {
       const stops = [];
       for (let k = 0; k <= 255; k += 15) stops.push(`rgb(${this.mapBytes.slice(3 * k, 3 * k + 3)})`);
       by("bar").style.background = `linear-gradient(90deg, ${stops})`;
-      by("ticks").replaceChildren(...ticks(0, top / inUnit.factor, 4).map((v) => {
-        const tick = mark(digits(v), "");
-        tick.style.left = `${100 * v * inUnit.factor / top}%`;
+      by("ticks").replaceChildren(...this.marks().map(({ text, part }) => {
+        const tick = mark(text, "");
+        tick.style.left = `${100 * part}%`;
         return tick;
       }));
     } else if (kind === "label") {
@@ -201,8 +269,9 @@ class Page {
 
   setUpView() {
     const { look, camera } = this.picture;
-    by("lines").addEventListener("change", () => { look.lines = by("lines").checked; this.dirty = true; });
-    by("start").addEventListener("change", () => { look.start = by("start").checked; this.dirty = true; });
+    for (const [id, what] of [["lines", "lines"], ["fixed-lines", "fixedLines"], ["start", "start"]])
+      by(id).addEventListener("change", () => { look[what] = by(id).checked; this.dirty = true; });
+    by("fixed-row").hidden = !this.run.facts.fixed.length;
     for (const id of ["section", "section-place"]) by(id).addEventListener("input", () => this.setSection());
     const views = { top: [-Math.PI / 2, Math.PI / 2], x: [-Math.PI, 0], y: [-Math.PI / 2, 0] };
     for (const button of document.querySelectorAll("[data-view]"))
@@ -212,7 +281,7 @@ class Page {
       });
     by("save").addEventListener("click", () => this.save());
     addEventListener("resize", () => (this.dirty = true));
-    matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => (this.dirty = true));
+    DARK.addEventListener("change", () => (this.dirty = true));
   }
 
   // Cut away what lies before a plane.
@@ -322,7 +391,7 @@ class Page {
     for (const { name, label, unit, on, kind, top, labels } of run.fields) {
       const value = frame.values[name]?.[{ node, element, face }[on]];
       if (value === undefined || kind === "scattered") continue;
-      const amount = (value / 255) * (frame.high[name] ?? 1), inUnit = scaled(top, unit);
+      const amount = (value / 255) ** 2 * (frame.high[name] ?? 1), inUnit = scaled(top, unit);
       const shown = `${digits(amount / inUnit.factor, 2)} ${unit === "1" ? "" : inUnit.unit}`;
       texts.push(`${label}: ${kind === "label" ? labels[value] : shown}`);
     }
@@ -390,10 +459,10 @@ class Page {
   draw() {
     const { run, picture } = this, time = run.times.length ? run.timeOf(this.frame) : 0;
     if (picture) {
-      picture.draw(this.frame, matchMedia("(prefers-color-scheme: dark)").matches ? [0.1, 0.12, 0.15] : [1, 1, 1]);
+      picture.draw(this.frame, DARK.matches ? [0.1, 0.12, 0.15] : [1, 1, 1]);
       this.drawScale(by("hud"), devicePixelRatio || 1);
       by("slider").value = this.frame;
-      by("now").textContent = `${time.toFixed(this.decimals)} s`;
+      if (document.activeElement !== by("now")) by("now").value = time.toFixed(this.decimals);
       this.tellPicked();
     }
     this.columns.draw(time);
@@ -406,7 +475,7 @@ class Page {
     return step > 0 ? Math.min(9, Math.max(0, 1 - Math.floor(Math.log10(step)))) : 2;
   }
 
-  // Axes at the top, a bar of round length at the bottom.
+  // Directions at the top, a bar of round length at the bottom.
   drawScale(canvas, ratio) {
     const w = canvas.clientWidth, h = canvas.clientHeight, style = getComputedStyle(document.body);
     canvas.width = w * ratio;
@@ -425,18 +494,43 @@ class Page {
     x.strokeRect(left, low + 5, wide, 0);
     x.textAlign = "center";
     x.fillText(`${digits(length / inUnit.factor)} ${inUnit.unit}`, left + wide / 2, low - 3);
-    const { right, up, eye } = this.picture.axes(), ox = w - 58, oy = 58;
-    const arms = [["#cc3311", [1, 0, 0]], ["#228833", [0, 1, 0]], ["#0077bb", [0, 0, 1]]];
-    arms.map(([color, way], k) => ({ color, name: "xyz"[k], x: dot(way, right), y: -dot(way, up), z: dot(way, eye) }))
+    const { right, up, eye } = this.picture.axes();
+    const flat = (way) => ({ x: dot(way, right), y: -dot(way, up), z: dot(way, eye) });
+    x.translate(w - 58, 58);
+    if (this.run.facts.north) this.drawNorth(x, flat);
+    else this.drawAxes(x, flat);
+  }
+
+  drawAxes(x, flat) {
+    [[1, 0, 0], [0, 1, 0], [0, 0, 1]]
+      .map((way, k) => ({ color: AXES[DARK.matches ? "dark" : "light"][k], name: "xyz"[k], ...flat(way) }))
       .sort((a, b) => a.z - b.z)
       .forEach((arm) => {
         x.strokeStyle = x.fillStyle = arm.color;
         x.beginPath();
-        x.moveTo(ox, oy);
-        x.lineTo(ox + 32 * arm.x, oy + 32 * arm.y);
+        x.moveTo(0, 0);
+        x.lineTo(32 * arm.x, 32 * arm.y);
         x.stroke();
-        if (Math.hypot(arm.x, arm.y) > 0.2) x.fillText(arm.name, ox + 42 * arm.x, oy + 42 * arm.y + 4);
+        if (Math.hypot(arm.x, arm.y) > 0.2) x.fillText(arm.name, 42 * arm.x, 42 * arm.y + 4);
       });
+  }
+
+  // A needle to the north in a level ring.
+  drawNorth(x, flat) {
+    const path = (points) => {
+      x.beginPath();
+      for (const point of points) { const { x: right, y: down } = flat(point); x.lineTo(30 * right, 30 * down); }
+      x.closePath();
+      x.stroke();
+    };
+    x.lineWidth = 1;
+    path(Array.from({ length: 48 }, (_, k) => [Math.sin((k * Math.PI) / 24), Math.cos((k * Math.PI) / 24), 0]));
+    path([[0, -0.8, 0], [0.24, 0, 0], [-0.24, 0, 0]]);
+    path([[0, 0.8, 0], [0.24, 0, 0], [-0.24, 0, 0]]);
+    x.fill();
+    const tip = flat([0, 1, 0]);
+    x.font = `600 13px ${getComputedStyle(document.body).fontFamily}`;
+    x.fillText("N", 40 * tip.x, 40 * tip.y + 5);
   }
 
   // Picture, scale, legend and time as one PNG.
@@ -456,17 +550,17 @@ class Page {
     x.scale(ratio, ratio);
     x.font = `600 14px ${style.fontFamily}`;
     x.fillStyle = style.color;
-    x.fillText(`${by("legend-name").textContent}   t = ${by("now").textContent}`, 16, 28);
+    x.fillText(`${by("legend-name").textContent}   t = ${by("now").value} s`, 16, 28);
     this.saveLegend(x, style);
     const link = document.createElement("a");
     link.href = all.toDataURL("image/png");
-    link.download = `${this.field.name}-${by("now").textContent.replace(" ", "")}.png`;
+    link.download = `${this.field.name}-${by("now").value}s.png`;
     link.click();
   }
 
   saveLegend(x, style) {
     x.font = `12px ${style.fontFamily}`;
-    const { kind, top, unit, labels } = this.field, { factor } = scaled(top, unit);
+    const { kind, labels } = this.field;
     if (kind === "label") labels.slice(0, 12).forEach((name, k) => {
       x.fillStyle = GROUPS[k % GROUPS.length];
       x.fillRect(16, 38 + 18 * k, 11, 11);
@@ -481,7 +575,7 @@ class Page {
     }
     x.fillStyle = style.color;
     x.textAlign = "center";
-    for (const v of ticks(0, top / factor, 4)) x.fillText(digits(v), 16 + (236 * v * factor) / top, 64);
+    for (const { text, part } of this.marks()) x.fillText(text, 16 + 236 * part, 64);
   }
 
   // ---------------------------------------------------------------- a run that goes on
@@ -542,6 +636,7 @@ async function main() {
 
 main().catch((error) => {
   const told = document.createElement("p");
+  by("loading")?.remove();
   told.className = "missing";
   told.textContent = `This page cannot be shown: ${error.message}`;
   document.body.prepend(told);

@@ -11,6 +11,7 @@ const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 
 const COLOR_OF = { amount: 0, label: 1, scattered: 2 };
 const DRAW = { ROCK: 0, START: 1, NUMBERS: 2 };
+const FIXED_ROCK = [0.7, 0.715, 0.735]; // rock that cannot move has no amount to show
 const ABOVE = 56, BELOW = 66; // pixels of the page
 const COLORS = 251; // of blocks and pieces: the same in moving_surface.py
 const UNITS = ["place0", "place1", "corners", "about", "value0", "value1", "map"];
@@ -31,7 +32,7 @@ void main() {
   P = mix(low0 + step0 * vec3(texelFetch(place0, at(node), 0).xyz),
           low1 + step1 * vec3(texelFetch(place1, at(node), 0).xyz), between);
   float v0 = texelFetch(value0, at(row), 0).r, v1 = texelFetch(value1, at(row), 0).r;
-  value = mix(v0 * scale0, v1 * scale1, between);
+  value = mix(v0 * v0 * scale0, v1 * v1 * scale1, between);
   uint group = a.z & 255u;
   label = source == 1 ? int(group) : source == 2 ? int((a.z >> 8) & 255u)
         : source == 3 ? int(c.w % ${COLORS}u) : int(v0 * 255. + .5);
@@ -46,9 +47,9 @@ const FRAGMENT = `#version 300 es
 precision highp float; precision highp int; precision highp sampler2D;
 in vec3 P, side; in float value;
 flat in int label, triangle; flat in uint bits, block;
-uniform sampler2D map; uniform int draw, color; uniform bool lines, cut;
-uniform vec3 palette[12], eye, paper; uniform vec4 plane; uniform float least;
-uniform uint hidden[8], chosen;
+uniform sampler2D map; uniform int draw, color; uniform bool lines, fixedLines, cut, logarithmic, groups;
+uniform vec3 palette[12], eye, paper; uniform vec4 plane; uniform float least; uniform vec2 span;
+uniform uint hidden[8], fixedRock[8], chosen;
 out vec4 result;
 vec3 scattered(int number) { // hues that lie far from one another
   float hue = fract(float(number) * .61803399), light = .5 + .16 * fract(float(number) * .7548777);
@@ -58,7 +59,9 @@ vec3 scattered(int number) { // hues that lie far from one another
 vec3 colored() {
   if (color == 1) return palette[label % 12];
   if (color == 2) return scattered(label);
-  return texture(map, vec2(clamp(value, 0., 1.) * .996 + .002, .5)).rgb;
+  float part = logarithmic ? log(max(value, 1e-30) / span.x) / log(span.y / span.x)
+             : (value - span.x) / (span.y - span.x);
+  return texture(map, vec2(clamp(part, 0., 1.) * .996 + .002, .5)).rgb;
 }
 float edge() { // how much of the pixel is an edge of the face
   vec3 wide = fwidth(side), near = smoothstep(vec3(0.), wide * 1.1, side);
@@ -69,20 +72,22 @@ float edge() { // how much of the pixel is an edge of the face
   float largest = max(wide.x, max(wide.y, wide.z)); // small faces on the screen lose their edges
   return (1. - far) * (1. - smoothstep(.08, .4, largest));
 }
+bool has(uint mask, uint group) { return ((mask >> (group % 32u)) & 1u) == 1u; }
 void main() {
   uint group = bits & 255u;
-  if (((hidden[group / 32u] >> (group % 32u)) & 1u) == 1u) discard;
+  if (has(hidden[group / 32u], group)) discard;
   if (dot(P, plane.xyz) < plane.w || (draw != ${DRAW.START} && color == 0 && value < least)) discard;
   if (draw == ${DRAW.NUMBERS}) {
     int n = triangle + 1;
     result = vec4(n & 255, (n >> 8) & 255, (n >> 16) & 255, 255) / 255.;
     return;
   }
-  vec3 c = colored();
+  bool isFixed = has(fixedRock[group / 32u], group);
+  vec3 grey = vec3(${FIXED_ROCK}), c = isFixed && !groups ? grey : colored();
   bool inside = cut && !gl_FrontFacing && draw == ${DRAW.ROCK};
   if (inside) { // rock that the section goes through: hatched, as in a drawing
     float line = abs(fract((gl_FragCoord.x + gl_FragCoord.y) / 9.) - .5);
-    vec3 rock = mix(palette[int(group) % 12], paper, .62);
+    vec3 rock = mix(isFixed && !groups ? grey : palette[int(group) % 12], paper, .62);
     result = vec4(mix(rock * .72, rock, smoothstep(.05, .14, line)), 1.);
     return;
   }
@@ -93,7 +98,7 @@ void main() {
   if (draw == ${DRAW.START}) { result = vec4(mix(paper, vec3(.36, .42, .5), .8), .22); return; }
   c *= light;
   if (chosen == block) c = mix(c, vec3(1., .62, .1), .55);
-  if (lines) c = mix(c, c * .3, .5 * edge());
+  if (isFixed ? fixedLines : lines) c = mix(c, c * .3, .5 * edge());
   result = vec4(c, 1.);
 }`;
 
@@ -125,8 +130,8 @@ class Picture {
     this.textures = UNITS.map(() => gl.createTexture());
     this.camera = { azimuth: -1, height: 0.5, radius: 1, center: [0, 0, 0] };
     this.look = {
-      field: null, hidden: new Uint32Array(8), least: 0, section: null, lines: true, start: false,
-      chosen: STAYS,
+      field: null, span: [0, 1], logarithmic: false, hidden: new Uint32Array(8), least: 0,
+      section: null, lines: true, fixedLines: false, start: false, chosen: STAYS,
     };
     gl.useProgram(this.program);
     this.noArrays = gl.createVertexArray();
@@ -190,6 +195,10 @@ class Picture {
     this.corners = padded(run.corners);
     this.about = padded(run.about);
     this.origin = run.frames[0].low;
+    this.fixedRock = new Uint32Array(8);
+    run.groups.forEach((name, g) => {
+      if (run.facts.fixed.includes(name)) this.fixedRock[g >> 5] |= 1 << (g & 31);
+    });
     this.empty ??= new Uint8Array(ROW);
   }
 
@@ -354,7 +363,7 @@ class Picture {
 
   // Bind two frames, the field that colours them, and what is hidden.
   setFrame(first, second, between) {
-    const gl = this.gl, run = this.run, { field, section } = this.look;
+    const gl = this.gl, run = this.run, { field, section, span } = this.look;
     [first, second].forEach((f, k) => {
       const frame = run.frames[f], values = frame.values[field.name];
       this.hold(k, frame.place, 3, gl.RGB16UI, gl.RGB_INTEGER, gl.UNSIGNED_SHORT);
@@ -375,9 +384,14 @@ class Picture {
     const source = changes ? 0 : ["", "group", "joint", "block"].indexOf(field.name);
     gl.uniform1i(this.at("source"), source);
     gl.uniform1f(this.at("least"), this.look.least);
+    gl.uniform2fv(this.at("span"), span.map((value) => value / field.top));
+    gl.uniform1i(this.at("logarithmic"), this.look.logarithmic);
+    gl.uniform1i(this.at("groups"), field.name === "group");
     gl.uniform1uiv(this.at("hidden"), this.look.hidden);
+    gl.uniform1uiv(this.at("fixedRock"), this.fixedRock);
     gl.uniform1ui(this.at("chosen"), this.look.chosen);
     gl.uniform1i(this.at("lines"), this.look.lines);
+    gl.uniform1i(this.at("fixedLines"), this.look.fixedLines);
     gl.uniform1i(this.at("cut"), section !== null && !this.look.least);
     gl.uniform4fv(this.at("plane"), section ?? [0, 0, 0, -1]);
   }

@@ -165,6 +165,12 @@ class Run {
     return this.times[first] + (this.times[second] - this.times[first]) * (frame - first);
   }
 
+  // The frame next to a time [s].
+  nearest(time) {
+    const away = this.times.map((t) => Math.abs(t - time));
+    return away.indexOf(Math.min(...away));
+  }
+
   // The frame of a time [s]; it may lie between two.
   frameOf(time) {
     const last = this.times.length - 1, after = this.times.findIndex((t) => t > time);
