@@ -116,6 +116,7 @@ lint: setup
 	$(BIN)/python tools/members.py
 	$(BIN)/python tools/mutants.py --check
 	$(BIN)/python tools/package_layers.py
+	$(BIN)/python tools/package_files.py
 	$(BIN)/python tools/drawing.py --check
 	$(BIN)/python tools/walks.py --check
 	$(BIN)/python tools/links.py
