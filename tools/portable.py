@@ -7,6 +7,7 @@
 """
 
 import os
+import shutil
 import subprocess
 import sys
 
@@ -62,6 +63,8 @@ def check_syntax() -> None:
 
 def main() -> None:
     """Check both."""
+    if not shutil.which("clang++"):
+        sys.exit("make portable needs clang++ (Debian package clang)")
     check_syntax()
     check_results()
 
