@@ -5,7 +5,7 @@ CPP = $$(find core bindings tests/core -name '*.[hc]pp' -o -name '*.cu')
 export OMP_WAIT_POLICY ?= passive
 export PYVISTA_OFF_SCREEN ?= true
 
-.PHONY: setup build dev check test validate coverage mutants benchmark torture sanitize package nightly verify lint format demo docs cuda emulated devices serial clean
+.PHONY: setup build dev check test validate coverage mutants benchmark torture sanitize portable package nightly verify lint format demo docs cuda emulated devices serial clean
 .DEFAULT_GOAL := test
 
 setup: .venv/installed
@@ -91,6 +91,10 @@ sanitize: setup
 	OMP_NUM_THREADS=3 OMP_TOOL_LIBRARIES=$$(clang++ -print-resource-dir)/../../libarcher.so \
 	  TSAN_OPTIONS=ignore_noninstrumented_modules=1 build/thread/core_tests
 
+# As macOS would: by clang without OpenMP, the same bits; and the syntax by libc++ and for ARM.
+portable: setup
+	$(BIN)/python tools/portable.py
+
 # The sdist, from it the wheel, installed where no clone is: sizes, a run, problems, a law built.
 package: setup
 	$(BIN)/python tools/try_package.py
@@ -98,6 +102,7 @@ package: setup
 nightly: test validate coverage mutants
 	$(MAKE) emulated T=tests
 	$(BIN)/cdem verify --full
+	$(MAKE) portable
 	$(MAKE) cuda
 
 verify: dev
@@ -111,6 +116,7 @@ lint: setup
 	$(BIN)/python tools/members.py
 	$(BIN)/python tools/mutants.py --check
 	$(BIN)/python tools/package_layers.py
+	$(BIN)/python tools/package_files.py
 	$(BIN)/python tools/drawing.py --check
 	$(BIN)/python tools/walks.py --check
 	$(BIN)/python tools/links.py

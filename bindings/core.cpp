@@ -4,7 +4,6 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
-#include <omp.h>
 
 #include "bindings/arrays.hpp"
 #include "bindings/laws.hpp"
@@ -12,6 +11,7 @@
 #include "core/base/device.hpp"
 #include "core/base/emulated.hpp"
 #include "core/base/machine_limits.hpp"
+#include "core/base/openmp.hpp"
 #include "core/bonds/initial_tractions.hpp"
 #include "core/contact/pair_list/deep_overlaps.hpp"
 #include "core/contact/pair_list/initial_overlaps.hpp"
@@ -429,6 +429,7 @@ NB_MODULE(CDEM_MODULE, module) {
              "Memory bandwidth of a triad over arrays of so many bytes together [B/s].");
   module.def("measure_flops", &measure_flops, "Peak rate of fused multiply-adds [flop/s].");
   module.def("max_threads", [] { return omp_get_max_threads(); });
+  module.attr("openmp") = with_openmp;
 
   nb::class_<Core> core(module, "Core");
   core.def(nb::init<>());

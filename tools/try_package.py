@@ -1,10 +1,13 @@
 """Make the sdist, from it the wheel, install that where no clone is, and do what a user does first.
 
 `python tools/try_package.py` builds; `python tools/try_package.py WHEEL` tries a wheel that is there.
-Prints what the light install takes on disk, package by package. Ends at the first command that fails.
+Prints how long it takes from `pip install` to the first result and to the first picture, and what the
+light install takes on disk, package by package. Where qemu-x86_64 is, an emulated CPU without AVX
+must compute the same bytes as this one. Ends at the first command that fails.
 """
 
 import os
+import shutil
 import subprocess
 import sys
 import tarfile
@@ -37,8 +40,19 @@ NOTICES = {
     "NOTICES.txt": ["nanobind (BSD-3-Clause)", "robin-map (MIT)", "libgomp (GPL-3.0-or-later"],
 }
 """What must be in a package, and how lines of it begin."""
-FIRST = [
+RESULT = [
     "cdem doctor",
+    "cdem new incline",
+    "cdem check incline.yaml",
+    "cdem run incline.yaml --threads 1 --quiet",
+]
+"""To the first result."""
+OLD_CPU = (
+    "CDEM_ISA=x86_64 qemu-x86_64 -cpu Nehalem bare/bin/python -m cdem run incline.yaml"
+    " -o old.results --threads 1 --quiet && cmp incline.results/histories.csv old.results/histories.csv"
+)
+"""A CPU of 2008; NumPy needs one as new."""
+MORE = [
     "cdem new landslide",
     "cdem run landslide.yaml --threads 1 --quiet",
     "cdem info landslide.results",
@@ -51,15 +65,26 @@ LAWS = [
 ]
 
 
-def run(command: list[str] | str, **more: object) -> None:
-    """Run a command, or end with its status."""
+def run(command: list[str] | str, **more: object) -> float:
+    """Run a command, or end with its status.
+
+    Returns:
+        The time it took [s].
+    """
     shown = command if isinstance(command, str) else " ".join(command).split("\n")[0]
     print(f"$ {shown}", flush=True)
     began = time.perf_counter()
     status = subprocess.run(command, check=False, **more).returncode
     if status:
         sys.exit(f"{shown}: status {status}")
-    print(f"  {time.perf_counter() - began:.0f} s", flush=True)
+    seconds = time.perf_counter() - began
+    print(f"  {seconds:.0f} s", flush=True)
+    return seconds
+
+
+def run_all(commands: list[str], work: dict[str, object]) -> float:
+    """Run commands of a shell; the time they took [s]."""
+    return sum(run(command, shell=True, **work) for command in commands)
 
 
 def make_wheel(folder: Path) -> Path:
@@ -94,7 +119,7 @@ def check_notices(package: Path) -> None:
 
 def main() -> None:
     """Build, install, print sizes, run."""
-    with tempfile.TemporaryDirectory() as place:
+    with tempfile.TemporaryDirectory(prefix="a place ") as place:
         folder = Path(place)
         wheel = Path(sys.argv[1]).resolve() if sys.argv[1:] else make_wheel(folder)
         for package in (wheel, *folder.glob("*.tar.gz")):
@@ -105,14 +130,22 @@ def main() -> None:
         env = {name: text for name, text in os.environ.items() if not name.startswith("PYTHON")}
         env["PATH"] = f"{tools}:/usr/local/bin:/usr/bin:/bin"
         work = {"cwd": folder, "env": env}
-        install = [str(tools / "python"), "-m", "pip", "install", "-q"]
-        run([*install, str(wheel)], **work)
-        run([str(tools / "python"), "-c", SIZES], **work)
-        for command in FIRST:
-            run(command, shell=True, **work)
-        run([*install, f"{wheel}[laws]"], **work)
-        for command in LAWS:
-            run(command, shell=True, **work)
+        try_wheel(wheel, str(tools / "python"), work)
+
+
+def try_wheel(wheel: Path, python: str, work: dict[str, object]) -> None:
+    """Install a wheel, and do what a user does first."""
+    install = f'"{python}" -m pip install -q "{wheel}'
+    seconds = run_all([f'{install}"', *RESULT], work)
+    print(f"from pip install to the first result: {seconds:.0f} s")
+    run([python, "-c", SIZES], **work)
+    seconds += run_all([f'{install}[viz]"', "cdem plot incline.results"], work)
+    print(f"from pip install to the first picture: {seconds:.0f} s")
+    if shutil.which("qemu-x86_64"):
+        run(OLD_CPU, shell=True, **work)
+    else:
+        print("a CPU without AVX: not tried, no qemu-x86_64 (Debian package qemu-user)")
+    run_all([*MORE, f'{install}[laws]"', *LAWS], work)
 
 
 if __name__ == "__main__":

@@ -1,14 +1,13 @@
 // device.cpp - see device.hpp. Compiled as C++, and as CUDA for the CUDA module.
 #include "core/base/device.hpp"
 
-#include <omp.h>
-
 #include <cstdlib>
 #include <cstring>
 #include <new>
 #include <stdexcept>
 
 #include "core/base/lanes.hpp"
+#include "core/base/openmp.hpp"
 
 namespace cdem {
 inline namespace CDEM_DEVICE {

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <algorithm>
-#include <atomic>
 
 #include "core/base/device.hpp"
 #include "core/base/lanes.hpp"
@@ -61,13 +60,13 @@ struct Blocks {
 
 /// Raise a count that several threads may raise at once, and return its old value. Which of them
 /// comes first is left to chance: results found with it must be sorted. An atomic costs time, which
-/// one thread `alone` need not spend.
+/// one thread `alone` need not spend. Not std::atomic_ref, which libc++ lacks before version 19.
 CDEM_HD inline Index raise(Index& count, bool alone) {
   if (alone) return count++;
 #if defined(__CUDA_ARCH__)
   return atomicAdd(&count, 1);
 #else
-  return std::atomic_ref(count).fetch_add(1, std::memory_order_relaxed);
+  return __atomic_fetch_add(&count, 1, __ATOMIC_RELAXED);
 #endif
 }
 /// Set a flag that several threads may set at once.
@@ -75,7 +74,7 @@ CDEM_HD inline void set(Flag& flag, Flag value = 1) {
 #if defined(__CUDA_ARCH__)
   flag = value;
 #else
-  std::atomic_ref(flag).store(value, std::memory_order_relaxed);
+  __atomic_store_n(&flag, value, __ATOMIC_RELAXED);
 #endif
 }
 

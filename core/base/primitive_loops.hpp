@@ -2,14 +2,11 @@
 // it.
 #pragma once
 
-#if !defined(CDEM_CUDA)
-#include <omp.h>
-#endif
-
 #include <algorithm>
 #include <vector>
 
 #include "core/base/exact_sum.hpp"
+#include "core/base/openmp.hpp"
 #include "core/base/parallel_loops.hpp"
 #include "core/base/primitives.hpp"
 

@@ -1,7 +1,7 @@
 // threads.cpp - see threads.hpp.
 #include "core/base/threads.hpp"
 
-#include <omp.h>
+#include "core/base/openmp.hpp"
 
 namespace cdem {
 

@@ -1,7 +1,8 @@
-"""Instruction sets of the compiled core, best first. Also read by tools/build.py."""
+"""This CPU: instruction sets of the compiled core, best first, and cores. tools/build.py reads it too."""
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 # Targets of the compiled modules, best first, and the CPU flags that each needs.
@@ -29,3 +30,10 @@ def native() -> str:
     """The best instruction set that this CPU can run."""
     flags = cpu_flags()
     return next(isa for isa, needs in NEEDS.items() if flags >= needs)
+
+
+def cores() -> int:
+    """Cores that this process may use."""
+    if hasattr(os, "sched_getaffinity"):  # not on macOS
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1

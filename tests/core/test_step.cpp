@@ -1,6 +1,5 @@
 // One time step: flight, collision, and steps that do not depend on threads.
-#include <omp.h>
-
+#include "core/base/openmp.hpp"
 #include "core/step.hpp"
 #include "tests/core/scene.hpp"
 

@@ -1,13 +1,12 @@
 // pair_search.cpp - see pair_search.hpp.
 #include "core/contact/broad_phase/pair_search.hpp"
 
-#include <omp.h>
-
 #include <algorithm>
 #include <exception>
 #include <utility>
 #include <vector>
 
+#include "core/base/openmp.hpp"
 #include "core/base/parallel.hpp"
 #include "core/contact/broad_phase/edge_edge_pairs.hpp"
 #include "core/contact/broad_phase/separating_planes.hpp"

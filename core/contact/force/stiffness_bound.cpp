@@ -2,7 +2,6 @@
 #include "core/contact/force/stiffness_bound.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <vector>
 
 #include "core/base/parallel.hpp"
@@ -17,9 +16,10 @@ namespace {
 
 /// Raise a value that several threads may raise at once.
 void raise_to(Real& most, Real value) {
-  const std::atomic_ref shared(most);
-  Real now = shared.load(std::memory_order_relaxed);
-  while (now < value && !shared.compare_exchange_weak(now, value, std::memory_order_relaxed)) {
+  constexpr int order = __ATOMIC_RELAXED;
+  Real now;
+  __atomic_load(&most, &now, order);
+  while (now < value && !__atomic_compare_exchange(&most, &now, &value, true, order, order)) {
   }
 }
 

@@ -1,14 +1,13 @@
 // deep_overlaps.cpp - see deep_overlaps.hpp.
 #include "core/contact/pair_list/deep_overlaps.hpp"
 
-#include <omp.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <utility>
 #include <vector>
 
+#include "core/base/openmp.hpp"
 #include "core/base/parallel.hpp"
 #include "core/contact/broad_phase/bounding_boxes.hpp"
 #include "core/contact/narrow_phase/side_pairs.hpp"

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
-import os
 from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
 
+from cdem._instruction_sets import cores
 from cdem.mesh.arrays import lengths
 from cdem.model.build import Build
 
@@ -29,15 +29,9 @@ def slips(build: Build, threads: int, unheld: dict[str, int]) -> Iterator[str]:
     yield from _tense_bolts(build)
     yield from _points_outside(build)
     yield from _frames(build)
-    if threads > (cores := _cores()):
-        yield f"--threads {threads}: there are {cores} cores for this process; more threads only wait"
+    if threads > (there := cores()):
+        yield f"--threads {threads}: there are {there} cores for this process; more threads only wait"
     yield from falls(build, unheld)
-
-
-def _cores() -> int:
-    if hasattr(os, "sched_getaffinity"):
-        return len(os.sched_getaffinity(0))
-    return os.cpu_count() or 1
 
 
 def _tense_bolts(build: Build) -> Iterator[str]:

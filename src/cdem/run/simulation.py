@@ -91,6 +91,7 @@ class Simulation(RunState):
         case = case if isinstance(case, Case) else Case.load(case)
         threads = threads or os.cpu_count() or 1
         native.set_threads(threads)
+        threads = native.max_threads()  # one, if the core has no OpenMP
         self.results: Results | None = None
         self._fast_weakening: dict[str, FastWeakening] = {}
         self._no_rest: NoRest | None = None

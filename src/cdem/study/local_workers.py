@@ -13,6 +13,7 @@ import subprocess
 from concurrent.futures import Future, ThreadPoolExecutor
 from typing import IO, Any
 
+from cdem._instruction_sets import cores
 from cdem.case import child
 from cdem.errors import CdemError
 
@@ -37,7 +38,7 @@ class LocalWorkers:
     dashboard = ""
 
     def __init__(self, count: int | None) -> None:
-        self.threads = count or len(os.sched_getaffinity(0))
+        self.threads = count or cores()
         self._idle: queue.SimpleQueue[_Worker] = queue.SimpleQueue()
         self._all = [_Worker() for _ in range(self.threads)]
         for worker in self._all:

@@ -12,6 +12,7 @@ import subprocess
 import sys
 
 from cdem._core_choice import GPU
+from cdem._instruction_sets import cores
 from cdem._version import __version__
 from cdem.case import child
 
@@ -38,7 +39,7 @@ def report() -> tuple[list[tuple[str, str]], bool]:
         ("python", f"{platform.python_version()} ({sys.executable})"),
         ("machine", f"{platform.system()} {platform.machine()}"),
         ("core", core),
-        ("threads", str(len(os.sched_getaffinity(0)))),
+        ("threads", _threads()),
         ("memory", _memory()),
         ("CUDA", _cuda()),
         ("OpenGL", _opengl()),
@@ -61,10 +62,20 @@ def _core() -> tuple[str, bool]:
     return f"{name} is used{why}; built for {', '.join(available)}", True
 
 
+def _threads() -> str:
+    try:
+        from cdem._native import core
+    except Exception:  # `_core` tells why
+        return str(cores())
+    return str(cores()) if core.openmp else "1: the compiler of the core had no OpenMP"
+
+
 def _memory() -> str:
-    pages, size = os.sysconf("SC_PHYS_PAGES"), os.sysconf("SC_PAGE_SIZE")
-    free = os.sysconf("SC_AVPHYS_PAGES")
-    return f"{pages * size / 2**30:.1f} GiB, {free * size / 2**30:.1f} GiB free"
+    page = os.sysconf("SC_PAGE_SIZE") / 2**30
+    known = f"{os.sysconf('SC_PHYS_PAGES') * page:.1f} GiB"
+    if "SC_AVPHYS_PAGES" not in os.sysconf_names:  # macOS
+        return known
+    return f"{known}, {os.sysconf('SC_AVPHYS_PAGES') * page:.1f} GiB free"
 
 
 def _cuda() -> str:

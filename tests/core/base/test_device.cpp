@@ -1,9 +1,8 @@
 // Memory of the CPU.
-#include <omp.h>
-
 #include <string>
 
 #include "core/base/device.hpp"
+#include "core/base/openmp.hpp"
 #include "tests/core/support.hpp"
 
 namespace cdem::test {
@@ -23,8 +22,10 @@ TEST_CASE("the CPU is the device, alone if it has one thread") {
   const int threads = omp_get_max_threads();
   omp_set_num_threads(1);
   CHECK(runs_alone());
+#if defined(_OPENMP)
   omp_set_num_threads(2);
   CHECK(!runs_alone());
+#endif
   omp_set_num_threads(threads);
 }
 #endif

@@ -1,11 +1,10 @@
 // Sums that no order changes, and that lose nothing.
-#include <omp.h>
-
 #include <limits>
 #include <numeric>
 #include <vector>
 
 #include "core/base/exact_sum.hpp"
+#include "core/base/openmp.hpp"
 #include "core/base/primitive_loops.hpp"
 #include "tests/core/support.hpp"
 

@@ -1,8 +1,7 @@
 // Counts and flags that several threads raise.
-#include <omp.h>
-
 #include <vector>
 
+#include "core/base/openmp.hpp"
 #include "core/base/parallel.hpp"
 #include "tests/core/support.hpp"
 

@@ -1,11 +1,10 @@
 // Loops over kernels run for every item once, in whole lanes and a remainder.
-#include <omp.h>
-
 #include <algorithm>
 #include <atomic>
 #include <type_traits>
 #include <vector>
 
+#include "core/base/openmp.hpp"
 #include "core/base/parallel_loops.hpp"
 #include "core/base/views.hpp"
 #include "tests/core/support.hpp"

@@ -1,9 +1,8 @@
 // What is done with whole arrays against the standard library, for any size and number of threads.
-#include <omp.h>
-
 #include <numeric>
 #include <vector>
 
+#include "core/base/openmp.hpp"
 #include "core/base/primitive_loops.hpp"
 #include "core/base/primitives.hpp"
 #include "tests/core/support.hpp"

@@ -1,8 +1,7 @@
 // Sums in tiles: the order is that of the elements, on any number of lanes and threads.
-#include <omp.h>
-
 #include <vector>
 
+#include "core/base/openmp.hpp"
 #include "core/elements/tile_loops.hpp"
 #include "core/model/tiles.hpp"
 #include "tests/core/support.hpp"

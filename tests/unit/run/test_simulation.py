@@ -9,6 +9,7 @@ import yaml
 from shared.cases import FALL
 
 import cdem
+from cdem import _native as native
 from cdem.output.report import closing
 from cdem.run.checkpoint import read_checkpoint, write_checkpoint
 
@@ -111,3 +112,11 @@ def test_a_case_that_is_changed_after_the_start_stops_the_run():
 def test_energy_that_is_off_by_more_than_a_percent_is_flagged():
     assert closing({"error": 0.0099}) == "0.99 %"
     assert closing({"error": -0.02}) == "-2 %: above 1 %, check the run before you trust it"
+
+
+def test_threads_are_those_that_the_core_has(monkeypatch):
+    sim = cdem.Simulation("cube.yaml", threads=3)
+    assert sim.threads == 3
+    monkeypatch.setattr(native.core, "max_threads", lambda: 1)  # as without OpenMP
+    sim = cdem.Simulation("cube.yaml", threads=3)
+    assert sim.threads == 1

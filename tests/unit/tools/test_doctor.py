@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import json
+import os
 from pathlib import Path
 
 from cdem import __version__
+from cdem._instruction_sets import cores
+from cdem._native import core as native
 from cdem.tools import doctor
 
 
@@ -24,6 +27,23 @@ def test_doctor_says_who_chose_the_core(monkeypatch):
     core, usable = doctor._core()
     assert usable
     assert " is used, chosen by CDEM_ISA; built for " in core
+
+
+def test_doctor_counts_threads(monkeypatch):
+    monkeypatch.setattr(doctor, "cores", lambda: 3)
+    monkeypatch.setattr(native, "openmp", True)
+    assert doctor._threads() == "3"
+    monkeypatch.setattr(native, "openmp", False)
+    assert doctor._threads() == "1: the compiler of the core had no OpenMP"
+
+
+def test_doctor_works_where_the_system_does_not_tell_free_memory(monkeypatch):
+    names = {name: code for name, code in os.sysconf_names.items() if name != "SC_AVPHYS_PAGES"}
+    assert doctor._memory().endswith(" GiB free")
+    monkeypatch.setattr(os, "sysconf_names", names)
+    monkeypatch.delattr(os, "sched_getaffinity")
+    assert doctor._memory().endswith(" GiB")
+    assert cores() == os.cpu_count()
 
 
 def test_doctor_says_how_to_get_a_core_for_a_gpu(monkeypatch):
