@@ -12,20 +12,12 @@ FAULTS = [
         f"{PINNED}[dug-1]",
     ),
     Mutant(
-        "left friction",
-        "friction of blocks that have left is lost from the ledger",
-        "core/run/take_out.cpp",
-        "      s.taken_out_friction += friction[slot];\n",
-        "",
-        f"{PINNED}[leaving-3]",
-    ),
-    Mutant(
         "left work",
         "what damping will have done on nodes that have left stays in the ledger",
         "core/run/take_out.cpp",
         "    work_damping[i] -= sample[4 * i + 2];\n",
         "",
-        f"{PINNED}[leaving-3]",
+        "tests/core/run/test_take_out.cpp",
     ),
     Mutant(
         "bare walls",
