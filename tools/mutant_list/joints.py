@@ -4,6 +4,14 @@ from mutant_list.mutant import Mutant
 
 FAULTS = [
     Mutant(
+        "border of blocks",
+        "points between blocks move off their border, onto the plane of a joint",
+        "src/cdem/joints/snapping.py",
+        "single | (low != high)[number] | ",
+        "single | ",
+        "tests/unit/joints/test_snapping.py",
+    ),
+    Mutant(
         "rim",
         "a disc that reaches into a block by its rim only does not cut it",
         "src/cdem/joints/discs.py",

@@ -16,6 +16,7 @@ from cdem.joints.convex_cells import Cells, from_mesh, from_polyhedron, join
 from cdem.joints.cutting import cut
 from cdem.joints.directions import fisher, mean_normal
 from cdem.joints.discs import Disc, cut_by_disc, draw_discs
+from cdem.joints.snapping import onto_plane
 from cdem.mesh.arrays import along
 from cdem.mesh.blocks import block_labels
 from cdem.mesh.element_shapes import NODES
@@ -94,6 +95,8 @@ class Cutting:
         bridges: Sources that are rock bridges.
         thin: Number of blocks left whole because a part would be too thin.
         discs: For each set with discs: number of discs, and number that meet a block.
+        moved: Number of points of tets that moved onto a plane.
+        way: How far at most [m].
     """
 
     c: Cells
@@ -101,6 +104,8 @@ class Cutting:
     bridges: list[int] = field(default_factory=list)
     thin: int = 0
     discs: dict[str, tuple[int, int]] = field(default_factory=dict)
+    moved: int = 0
+    way: float = 0.0
 
 
 def cut_by_sets(
@@ -130,6 +135,8 @@ def cut_by_sets(
             _cut_by_discs(done, joint, discs, among, thinnest)
             continue
         for normal, offset, random in planes(joint, corners):
+            done.c, moved, way = onto_plane(done.c, normal, offset, among)
+            done.moved, done.way = done.moved + moved, max(done.way, way)
             done.c, count = cut(
                 done.c,
                 normal,
@@ -261,7 +268,7 @@ def _cut_and_mesh(
     c, closed = close_short_edges(done.c, SHORTEST * thinnest)
     made = to_mesh(c, names, surfaces, done.of_plane)
     made.discs = done.discs
-    made.notes = _notes(done.thin, closed, c.volumes().sum() / whole - 1, thinnest)
+    made.notes = _notes(done, closed, c.volumes().sum() / whole - 1, thinnest)
     for name in model.joint_surfaces:
         made.surfaces.setdefault(name, [])
     for joint in model.joints:
@@ -299,11 +306,16 @@ def _divide(piece: Mesh, jointed: set[str]) -> tuple[Mesh, Mesh]:
     return out[0], out[1]
 
 
-def _notes(thin: int, closed: int, change: float, thinnest: float) -> list[str]:
+def _notes(done: Cutting, closed: int, change: float, thinnest: float) -> list[str]:
     out = []
-    if thin:
+    if done.moved:
         out.append(
-            f"joints: {thin} cuts left out, since a part would be thinner than {thinnest:.3g} m "
+            f"joints: {done.moved:,} points of tets moved onto the planes that cut them, by up to "
+            f"{done.way:.2g} m, so that the planes cut no slivers"
+        )
+    if done.thin:
+        out.append(
+            f"joints: {done.thin} cuts left out, since a part would be thinner than {thinnest:.3g} m "
             "(model.thinnest)"
         )
     if closed:
