@@ -184,6 +184,22 @@ def shaken(name: str, height: float, part: float, quick: bool = False) -> Slope:
     return Slope(name, height, made.case, factor, quick=quick, second=second)
 
 
+def through_tets(name: str) -> Slope:
+    """A plane that daylights in an upright face and passes points of a mesh of tets closely."""
+    height, foot, width, dip, friction, cohesion = 40.0, 4.0, 20.0, 35.0, 33.0, 60e3
+    size, far = [60.0, width, height], 1e4
+    box = {"size": size, "divisions": [12, 4, 8], "shape": "tet4"}
+    plane = {"name": "plane", "dip": dip, "dip_direction": 90, "origin": [size[0], 0, foot]}
+    model = {"blocks": [{"group": "rock", "box": box}], "joints": [plane]}
+    back = {"box": {"min": [-far] * 3, "max": [0.01, far, far]}, "fix": ["x"]}
+    case = static(name, model, [joint("plane", friction, cohesion)],
+                  [below(0.01), back, sides(width)], rock(26e3))  # fmt: skip
+    rise = height - foot
+    area, body = rise / np.sin(np.radians(dip)), 26e3 * rise**2 / 2 / tan(dip)
+    second = moving([0.0, -body], dip, friction, held=cohesion * area)
+    return Slope(name, height, case, sliding(body, dip, friction, cohesion, area), second=second)
+
+
 def planes() -> list[Slope]:
     """All of them."""
     return [
@@ -195,6 +211,7 @@ def planes() -> list[Slope]:
         cracked("plane, tension crack half full", 0.5),
         cracked("plane, tension crack full", 1.0),
         cracked("plane, tension crack full, anchored", 1.0, pull=3e6),
+        through_tets("plane through a mesh of tets"),
         long_slope("long slope, dry", wet=False, quick=True),
         long_slope("long slope, seepage", wet=True, quick=True),
     ]

@@ -1,4 +1,4 @@
-"""32 slopes: factors of safety against closed forms and published intervals."""
+"""33 slopes: factors of safety against closed forms and published intervals."""
 
 import tempfile
 from pathlib import Path
