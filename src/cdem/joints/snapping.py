@@ -14,7 +14,7 @@ CLOSE = 0.2
 """Distance of points that move, over the shortest edge at them."""
 ASKEW = 0.5
 """Points slide along other faces if these are less parallel to the plane than this sine."""
-ONE_PLANE = 0.05
+ONE_PLANE = 1e-4
 """Faces at a point whose normals differ by a smaller sine are one plane to slide along."""
 LEFT = 0.2
 """Volume that a tet keeps at least, over its volume before."""
@@ -75,6 +75,7 @@ def _near_points(c: Cells, distance: Floats, among: NDArray[np.bool_]) -> NDArra
     edge = lengths(c.points[b] - c.points[a])
     np.minimum.at(shortest, a, edge)
     np.minimum.at(shortest, b, edge)
+    shortest[np.isinf(shortest)] = 0.0  # points of cells that are not cut
     return np.asarray(close & (np.abs(distance) < CLOSE * shortest))
 
 

@@ -1,5 +1,7 @@
 """Points of tets next to a plane move onto it: no slivers, and outer faces stay."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from shared.cells import ALL, cube
@@ -64,6 +66,15 @@ def test_only_tets_move():
     assert onto_plane(whole, NORMAL, OFFSET, ALL)[0] is whole
 
 
+def test_points_without_a_cell_stay():
+    """A mesh of which one group is cut has the points of all."""
+    c = cells(tets())
+    lonely = replace(c, points=np.concatenate([c.points, [[2.03, 1, 2.03]]]))
+    moved, count, _ = onto_plane(lonely, NORMAL, OFFSET, ALL)
+    assert count == onto_plane(c, NORMAL, OFFSET, ALL)[1]
+    assert (moved.points[-1] == lonely.points[-1]).all()
+
+
 def test_points_between_blocks_slide_along_their_border():
     mesh = tets()
     middle = mesh.points[mesh.cells["tet4"]].mean(axis=1)
@@ -72,6 +83,19 @@ def test_points_between_blocks_slide_along_their_border():
     border = c.points[:, 0] == 2
     assert (moved.points[border, 0] == 2).all()
     assert (moved.points[border] != c.points[border]).any()
+
+
+def test_points_of_a_curved_surface_stay():
+    mesh = tets()
+    top = mesh.points[:, 2] == 4
+    mesh.points[top, 2] += 0.002 * mesh.points[top, 0] ** 2
+    c = cells(mesh)
+    moved, count, _ = onto_plane(c, NORMAL, OFFSET, ALL)
+    upright = onto_plane(c, np.array([1.0, 0, 0]), 2.03, ALL)[0]
+    inner = ~((c.points <= 0) | (c.points >= 4)).any(axis=1)
+    assert count > 0 and (moved.points[top] == c.points[top]).all()
+    went = (upright.points != c.points).any(axis=1)
+    assert went[inner & (c.points[:, 0] == 2)].all() and not went[top].any()
 
 
 def test_points_where_two_surfaces_meet_stay():
