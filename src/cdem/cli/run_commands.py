@@ -58,6 +58,8 @@ def run(
     """Run all stages of a case. Ctrl-C stops it cleanly; --resume continues."""
     if resume and overwrite:
         raise typer.BadParameter("--resume and --overwrite exclude one another")
+    if force and not resume:
+        raise typer.BadParameter("--force goes with --resume; --overwrite replaces results")
     if quiet and as_json:
         raise typer.BadParameter("--quiet and --json exclude one another")
     folder = output or Path(f"{case_file.stem}.results")

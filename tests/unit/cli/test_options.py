@@ -29,3 +29,16 @@ def test_help_says_force_only_where_a_case_has_changed():
     assert [name for name in words if "--force" in words[name]] == ["run"]
     replacing = {name for name in words if "--overwrite" in words[name]}
     assert replacing == {"new", "site", "joints", "law new", "run"}
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (("--force",), "--force goes with --resume; --overwrite replaces results"),
+        (("--resume", "--overwrite"), "--resume and --overwrite exclude one another"),
+        (("--quiet", "--json"), "--quiet and --json exclude one another"),
+    ],
+)
+def test_options_of_run_that_do_not_go_together(run_cli, cube_folder, words, said):
+    status, out, err = run_cli("run", "cube.yaml", *words)
+    assert (status, out) == (2, "") and said in " ".join(err.split())
