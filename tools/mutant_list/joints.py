@@ -12,7 +12,7 @@ FAULTS = [
         "tests/unit/joints/test_snapping.py",
     ),
     Mutant(
-        "rim",
+        "rim of a disc",
         "a disc that reaches into a block by its rim only does not cut it",
         "src/cdem/joints/discs.py",
         "met[c.cell[faces[_away(disc.center, start, end) <= disc.radius]]] = True",
