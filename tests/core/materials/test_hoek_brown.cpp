@@ -80,6 +80,26 @@ TEST_CASE("a returned stress lies on the curve, and flow spends energy") {
   }
 }
 
+TEST_CASE("what is taken for elastic without its principal values does not flow") {
+  Random random(2);
+  const ElasticConstants<Real> elastic{4e3, 4e3};
+  for (const Said& said : {rock, Said{30, 20, 5, 0.5, no, no, no, 0, no, 1}}) {
+    const HoekBrown<Real> law = law_of_case(said);
+    int surely = 0;
+    for (int k = 0; k < 3000; ++k) {
+      const Real mean = random.between(-60, 1), size = random.between(0, 15);
+      const Sym3<Real> trial =
+          symmetric(random.matrix(size)) + Sym3<Real>{mean, mean, mean, 0, 0, 0};
+      if (!law.surely_elastic(trial)) continue;
+      ++surely;
+      Real state[2] = {};
+      const auto flow = law.flow(elastic, trial, state);
+      CHECK(contract(flow, flow) == 0);
+    }
+    CHECK(surely > 300);
+  }
+}
+
 TEST_CASE("a strength factor divides cohesion and friction of the tangent") {
   const ElasticConstants<Real> elastic{4e3, 4e3};
   Said said = rock;
