@@ -21,6 +21,7 @@ import shutil
 import signal
 import subprocess
 import sys
+import textwrap
 import time
 import venv
 from collections import Counter
@@ -298,7 +299,7 @@ def table(state: State, mutants: Sequence[Mutant]) -> str:
         "",
         f"{len(found)} of {len(mutants)} faults planted since they, their file or their test changed, "
         f"{caught} caught;",
-        f"by commit: {at or 'none'}.",
+        *textwrap.wrap(f"by commit: {at or 'none'}.", 100),
         "",
         "| fault | file | caught by | s | commit |",
         "|---|---|---|--:|---|",
