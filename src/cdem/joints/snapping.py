@@ -50,6 +50,7 @@ def onto_plane(
     before = _volumes(c.points, tets)
     while True:
         spoilt = _volumes(c.points + step, tets) < LEFT * before
+        spoilt &= step[tets].any(axis=(1, 2))  # others were inside out before
         if not spoilt.any():
             break
         step[tets[spoilt]] = 0.0

@@ -58,6 +58,38 @@ def test_corners_and_points_far_away_stay():
     assert onto_plane(c, np.array([0, 0, 1.0]), 2.5, ALL)[0] is c
 
 
+def test_points_of_faces_along_the_plane_stay():
+    """They would slide by more than twice their distance: here by three and a half times."""
+    lean = np.array([np.sin(0.3), 0.0, np.cos(0.3)])
+    assert onto_plane(cells(tets()), lean, float(lean @ [2, 2, 3.99]), ALL)[1] == 0
+
+
+def test_no_tet_loses_more_than_four_fifths_of_its_volume():
+    random = np.random.default_rng(3)
+    mesh = tets()
+    inner = ((mesh.points > 0) & (mesh.points < 4)).all(axis=1)
+    mesh.points[inner] += random.uniform(-0.3, 0.3, (inner.sum(), 3))
+    c, moves = cells(mesh), 0
+
+    def volumes(points):
+        x = points[mesh.cells["tet4"]]
+        return np.linalg.det(x[:, 1:] - x[:, :1])
+
+    for _ in range(300):
+        normal = random.normal(size=3)
+        normal /= np.linalg.norm(normal)
+        moved, count, _ = onto_plane(c, normal, float(normal @ random.uniform(1, 3, 3)), ALL)
+        assert (volumes(moved.points) / volumes(c.points)).min() > 0.2 * (1 - 1e-9)
+        moves += count
+    assert moves > 300
+
+
+def test_a_tet_that_is_inside_out_is_left_to_those_who_refuse_it():
+    mesh = tets()
+    mesh.cells["tet4"][5] = mesh.cells["tet4"][5][[1, 0, 2, 3]]
+    assert onto_plane(cells(mesh), NORMAL, OFFSET, ALL)[1] >= 1
+
+
 def test_only_tets_move():
     hexahedra = primitives.box("rock", (4, 4, 4), (4, 4, 4))
     c = convex_cells.from_mesh(hexahedra, ["rock"], np.zeros(64, int))
