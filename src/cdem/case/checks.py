@@ -65,20 +65,20 @@ def _names(case: CaseParts) -> Iterator[Problem]:
 
 def _surfaces(case: CaseParts) -> Iterator[Problem]:
     names = [stage.name for stage in case.stages]
-    for i, entry in enumerate(case.loads.surfaces):
+    for keys, entry in case.surface_entries:
         if not SURFACE_LAWS[entry.law].absorbs or entry.stage not in (None, *names):
             continue
         rest = case.stages[0 if entry.stage is None else names.index(entry.stage) :]
         if static := next((s.name for s in rest if s.mode == "static"), None):
             yield (
-                ("loads", "surfaces", i, "law"),
+                (*keys, "law"),
                 f"{entry.law} has dashpots, which carry no static load: the rock would creep away "
                 f"in the "
                 f"static stage {static}; start it in a later stage (stage: NAME), after all static "
                 "ones, and until then hold the faces with supports that this stage removes",
             )
     for i, history in enumerate(case.histories):
-        if "surface_force" in history.quantities and not case.loads.surfaces:
+        if "surface_force" in history.quantities and not case.surface_entries:
             yield ("histories", i, "quantities"), "surface_force needs loads.surfaces in the case"
 
 

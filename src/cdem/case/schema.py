@@ -16,6 +16,7 @@ from cdem.case.map_system import MapSystem
 from cdem.case.output_fields import CHOICE
 from cdem.case.softening import Softening
 from cdem.case.stress_schema import InitialStress
+from cdem.case.surface_schema import SurfaceLoad
 from cdem.case.types import (
     FileName,
     Length3,
@@ -28,6 +29,8 @@ from cdem.case.types import (
 )
 from cdem.case.water_schema import Water
 
+Keys = tuple[str | int, ...]
+"""Place of a value in a case."""
 MOST_STEPS = 2_000_000_000
 """Largest number of steps that can be counted."""
 
@@ -399,6 +402,11 @@ class CaseParts(Part):
     def absent(self, begun: int) -> list[str]:
         """Groups absent once this many stages have begun, in any order."""
         return absent_groups([(stage.remove, stage.add) for stage in self.stages], begun)
+
+    @property
+    def surface_entries(self) -> list[tuple[Keys, SurfaceLoad]]:
+        """All entries that act on faces by a law, each with its place in the case."""
+        return [(("loads", "surfaces", i), item) for i, item in enumerate(self.loads.surfaces)]
 
     @property
     def moved_masses(self) -> Literal["exact", "lumped-while-bonded", "lumped"]:

@@ -42,12 +42,13 @@ class SurfaceModel(Module):
 
     def add_arrays(self, parts: Parts) -> None:
         case, t, out = parts.case, parts.topology, parts.assembly
-        items = case.loads.surfaces
-        if not items:
+        entries = case.surface_entries
+        if not entries:
             return
+        items = [item for _, item in entries]
         faces = [
-            select_faces(case, t, parts.names, item.surface, f"loads.surfaces.{i}")
-            for i, item in enumerate(items)
+            select_faces(case, t, parts.names, item.surface, ".".join(map(str, keys)))
+            for keys, item in entries
         ]
         of_law = [
             native.surface_numbers(item.law, SURFACE_LAWS[item.law].numbers(item)) for item in items
@@ -89,10 +90,9 @@ class SurfaceModel(Module):
             )
 
     def report(self, build: Built) -> list[dict[str, Any]]:
-        items = build.case.loads.surfaces
         return [
             {"law": item.law, "stage": item.stage, "faces": faces, "area": area}
-            for item, (faces, area) in zip(items, self.found, strict=True)
+            for (_, item), (faces, area) in zip(build.case.surface_entries, self.found, strict=True)
         ]
 
     def lines(self, report: list[dict[str, Any]]) -> list[str]:
@@ -105,7 +105,7 @@ class SurfaceModel(Module):
 
 def _entries(case: Case) -> list[tuple[Any, ...]]:
     """Surface, law and stage of every entry."""
-    return [(item.surface, item.law, item.stage) for item in case.loads.surfaces]
+    return [(item.surface, item.law, item.stage) for _, item in case.surface_entries]
 
 
 def _impedances(parts: Parts) -> Floats:

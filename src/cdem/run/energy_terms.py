@@ -39,4 +39,4 @@ ENERGY_TERMS = [
 
 def terms_of(case: Case) -> list[EnergyTerm]:
     """The terms in the files of a case."""
-    return [term for term in ENERGY_TERMS if case.loads.surfaces or term.name not in OF_SURFACES]
+    return [term for term in ENERGY_TERMS if case.surface_entries or term.name not in OF_SURFACES]

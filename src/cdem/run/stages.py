@@ -206,7 +206,7 @@ def change_bolts(sim: RunState, stage: str) -> None:
 
 def begin_surfaces(sim: RunState, stage: str) -> None:
     """Start surface laws that wait for this stage; laws of the first stage already act."""
-    come = np.array([item.stage == stage for item in sim.case.loads.surfaces], np.int8)
+    come = np.array([item.stage == stage for _, item in sim.case.surface_entries], np.int8)
     if come.any() and sim.stage_index > 0:
         sim.core.begin_surfaces(come)
 
