@@ -8,6 +8,7 @@ from copy import deepcopy
 from pathlib import Path
 from typing import Any
 
+from cdem.case.boundary_checks import boundary_problems
 from cdem.case.curve_times import last_dynamic, least_time, over_early, timed
 from cdem.case.input_file import is_file
 from cdem.case.laws import BLOCK_LAWS, SURFACE_LAWS, block_contradiction
@@ -58,6 +59,7 @@ def _names(case: CaseParts) -> Iterator[Problem]:
     yield from _excavation(case)
     yield from _bolts(case)
     yield from _surfaces(case)
+    yield from boundary_problems(case)
     yield from _curves(case)
     yield from _joints(case)
     yield from _unique_names(case)
@@ -66,7 +68,11 @@ def _names(case: CaseParts) -> Iterator[Problem]:
 def _surfaces(case: CaseParts) -> Iterator[Problem]:
     names = [stage.name for stage in case.stages]
     for keys, entry in case.surface_entries:
-        if not SURFACE_LAWS[entry.law].absorbs or entry.stage not in (None, *names):
+        if (
+            keys[0] == "boundaries"
+            or not SURFACE_LAWS[entry.law].absorbs
+            or entry.stage not in (None, *names)
+        ):
             continue
         rest = case.stages[0 if entry.stage is None else names.index(entry.stage) :]
         if static := next((s.name for s in rest if s.mode == "static"), None):
@@ -296,6 +302,9 @@ def _group_names(case: CaseParts) -> Iterator[tuple[tuple[str | int, ...], str]]
             surface = getattr(load, "surface", None)
             if surface is not None and not isinstance(surface, str):
                 yield ("loads", kind, i, "surface", "group"), surface.group
+    for i, boundary in enumerate(case.boundaries):
+        if not isinstance(boundary.surface, str):
+            yield ("boundaries", i, "surface", "group"), boundary.surface.group
     for i, history in enumerate(case.histories):
         if history.group is not None:
             yield ("histories", i, "group"), history.group
@@ -341,6 +350,7 @@ def _unique_names(case: CaseParts) -> Iterator[Problem]:
         ("interfaces", "pairs"): case.interfaces.pairs,
         ("model", "joints"): case.model.joints,
         ("water", "fields"): case.water.fields if case.water else [],
+        ("boundaries",): case.boundaries,
     }
     for keys, entries in named.items():
         seen: set[str] = set()

@@ -9,6 +9,7 @@ from pydantic import Discriminator, Field, Tag, model_validator
 
 from cdem.case.bodies_schema import Model, exactly_one
 from cdem.case.bolts_schema import Bolts, BoltType
+from cdem.case.boundaries_schema import Boundary
 from cdem.case.interface_schema import Interfaces
 from cdem.case.laws import BLOCK_LAWS, choice, models
 from cdem.case.loads_schema import Axes, Loads
@@ -383,6 +384,7 @@ class CaseParts(Part):
     groups: dict[Name, Group] = Field(description="Groups by name; every body is in one")
     interfaces: Interfaces = Field(Interfaces(), description="Interfaces by pair of groups")
     loads: Loads = Field(Loads(), description="Actions from outside")
+    boundaries: list[Boundary] = Field([], description="Quiet faces, and bases that are shaken")
     initial_stress: list[InitialStress] = Field([], description="Stress at the start")
     water: Water | None = Field(None, description="Water in joints, pores and the open")
     bolts: list[Bolts] = Field([], description="Bolts and cables")
@@ -406,7 +408,10 @@ class CaseParts(Part):
     @property
     def surface_entries(self) -> list[tuple[Keys, SurfaceLoad]]:
         """All entries that act on faces by a law, each with its place in the case."""
-        return [(("loads", "surfaces", i), item) for i, item in enumerate(self.loads.surfaces)]
+        return [
+            *((("loads", "surfaces", i), item) for i, item in enumerate(self.loads.surfaces)),
+            *((("boundaries", i), b.dashpots) for i, b in enumerate(self.boundaries) if b.absorbs),
+        ]
 
     @property
     def moved_masses(self) -> Literal["exact", "lumped-while-bonded", "lumped"]:

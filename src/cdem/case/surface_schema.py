@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, ClassVar
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, get_args
 
 from pydantic import Discriminator, Field, Tag, model_validator
 
 from cdem.case.laws import SURFACE_LAWS, choice, models, surface_contradiction
 from cdem.case.timed_schema import Factored
 from cdem.case.types import Direction3, Name, Part
+
+QUIET = "quiet"
+"""The surface law of boundaries."""
 
 
 class FacesOfGroup(Part):
@@ -48,6 +51,17 @@ class SurfaceLoad(Factored):
         "count from there; by default from the start of the run",
     )
 
+    @model_validator(mode="before")
+    @classmethod
+    def _is_no_boundary(cls, data: Any) -> Any:
+        laws = get_args(cls.model_fields["law"].annotation)
+        if isinstance(data, dict) and data.get("law") == QUIET and QUIET not in laws:
+            raise ValueError(
+                "quiet faces are boundaries; write boundaries: [{name: NAME, surface: SURFACE, "
+                "quiet: true}]"
+            )
+        return data
+
     @model_validator(mode="after")
     def _parameters_fit(self) -> SurfaceLoad:
         if why := surface_contradiction(self):
@@ -55,7 +69,9 @@ class SurfaceLoad(Factored):
         return self
 
 
+OF_ENTRIES = {name: law for name, law in SURFACE_LAWS.items() if name != QUIET}
+"""Laws that an entry may have; quiet faces are boundaries."""
 if TYPE_CHECKING:
     AnySurfaceLoad = SurfaceLoad
 else:
-    AnySurfaceLoad = choice(models(SurfaceLoad, SURFACE_LAWS), SURFACE_LAWS)
+    AnySurfaceLoad = choice(models(SurfaceLoad, OF_ENTRIES), OF_ENTRIES)

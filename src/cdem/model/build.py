@@ -25,6 +25,7 @@ from cdem.mesh.topology import Topology
 from cdem.model.assemble import assemble
 from cdem.model.bodies import check_groups, read_model
 from cdem.model.bolts import BoltModel
+from cdem.model.boundaries import Boundaries, boundaries_of
 from cdem.model.compensation import (
     Compensation,
     compensate,
@@ -43,7 +44,7 @@ from cdem.model.interfaces import (
     strength_factors_of,
     that_may_break,
 )
-from cdem.model.loads import drop_gravity, set_velocities, start_on_supports, tractions_of
+from cdem.model.loads import drop_gravity, node_loads_of, set_velocities, start_on_supports
 from cdem.model.memory import check_memory, pieces_of_boxes, pieces_of_mesh
 from cdem.model.module import Module, Parts
 from cdem.model.modules import modules_of
@@ -89,6 +90,7 @@ class Build:
             `pairs_loose_joints`.
         initial: Initial stress of the rock, or None.
         modules: Modules by name.
+        boundaries: Quiet and driven boundaries.
     """
 
     case: Case
@@ -103,6 +105,7 @@ class Build:
     paired: NDArray[np.bool_]
     initial: InitialState | None
     modules: dict[str, Module]
+    boundaries: Boundaries
 
     def __post_init__(self) -> None:
         self.born = self.start_position
@@ -181,9 +184,10 @@ def build(case: Case) -> Build:
     between = made_up_between(laws, interface_of, bonds, groups)
     made_up = compensate(case, topology, names, groups, between)
     modules = modules_of(case, topology, names)
+    boundaries = boundaries_of(case, topology, names)
     at = topology.node_position
     parts = _assemble(
-        case, topology, at, laws, interface_of, paired, made_up, curves, None, modules
+        case, topology, at, laws, interface_of, paired, made_up, curves, None, modules, boundaries
     )
     core.take_counts(parts.counts)
     core.take_model(parts.arrays)
@@ -208,6 +212,7 @@ def build(case: Case) -> Build:
         paired,
         under,
         modules,
+        boundaries,
     )
     _set_motion(built)
     return built
@@ -248,6 +253,7 @@ def _assemble(
     curves: Curves,
     added_mass: Floats | None,
     modules: dict[str, Module],
+    boundaries: Boundaries,
 ) -> Assembly:
     """Arrays of the core, with the present supports and loads of the case.
 
@@ -257,7 +263,7 @@ def _assemble(
     entries = interface_entries(case, laws, names, topology.node_position)
     materials = [case.materials[case.groups[name].material] for name in names]
     stiffening, bond_stiffness = _made_up(topology, made_up)
-    supports = supports_of(case, topology, names, curves)
+    supports = supports_of(case, topology, names, curves, boundaries)
     properties = Properties(
         density=np.array([m.density for m in materials]),
         young_modulus=np.array([m.young_modulus for m in materials]),
@@ -292,7 +298,7 @@ def _assemble(
     check_softening(case, topology, names, parts)
     parts.arrays |= {f"support.{key}": value.ravel() for key, value in supports.items()}
     drop_gravity(case, topology, names, parts)
-    parts.arrays |= tractions_of(case, topology, names, curves)
+    parts.arrays |= node_loads_of(case, topology, names, curves, boundaries)
     given = Parts(case, topology, laws, interface_of, curves, native.padded_stride, parts)
     for module in modules.values():
         module.add_arrays(given)
@@ -373,6 +379,7 @@ def change(built: Build, *, places: bool = False) -> dict[str, NDArray]:
         built.curves,
         built.assembly.added_mass,
         built.modules,
+        built.boundaries,
     )
     for module in built.modules.values():
         module.refuse_change(case, built.assembly.counts, parts.counts)

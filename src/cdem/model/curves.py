@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from cdem.case.case import Case
+
 if TYPE_CHECKING:
     from cdem._core import Core
 
@@ -57,6 +59,14 @@ def add_curve(
     if history is None:
         return 0
     curves.append(Curve([float(t) for t, _ in history], [float(f) for _, f in history], stage))
+    return len(curves) - 1
+
+
+def add_record(case: Case, name: str, stage: str | None, curves: Curves) -> int:
+    """Index of the curve of a record's velocity [m/s]: 0 before its stage and after its end."""
+    record = case.processed(name)
+    times = [float(t) for t in record.step * np.arange(len(record.velocity) + 1)]
+    curves.append(Curve(times, [0.0, *map(float, record.velocity[1:]), 0.0], stage))
     return len(curves) - 1
 
 

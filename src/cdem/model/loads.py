@@ -1,4 +1,4 @@
-"""Tractions, gravity and initial velocities."""
+"""Forces on nodes in fixed directions, gravity and initial velocities."""
 
 from __future__ import annotations
 
@@ -9,7 +9,8 @@ from numpy.typing import NDArray
 
 from cdem.case.case import Case
 from cdem.mesh.topology import Topology
-from cdem.model.curves import Curves, add_curve
+from cdem.model.boundaries import Boundaries, wave_forces
+from cdem.model.curves import Curves, add_curve, add_record
 from cdem.model.faces import face_areas
 from cdem.model.flat_arrays import Assembly, Floats, ragged
 from cdem.model.selection import select_faces
@@ -27,11 +28,15 @@ def drop_gravity(case: Case, topology: Topology, names: list[str], parts: Assemb
             parts.arrays["node.gravity_mass"][groups == names.index(name)] = 0
 
 
-def tractions_of(
-    case: Case, topology: Topology, names: list[str], curves: Curves
+def node_loads_of(
+    case: Case, topology: Topology, names: list[str], curves: Curves, boundaries: Boundaries
 ) -> dict[str, NDArray]:
-    """Nodal forces of tractions: the area of each vertex of the loaded faces times the traction."""
-    nodes, forces, of_curve = [], [], []
+    """Nodal forces in fixed directions: tractions, forces of ended supports, and incoming waves.
+
+    A traction gives each vertex of a loaded face its share of the area times the traction.
+    """
+    nodes: list[NDArray[np.integer]] = []
+    forces, of_curve = [], []
     for index, item in enumerate(case.loads.tractions):
         faces = select_faces(case, topology, names, item.surface, f"loads.tractions.{index}")
         vertex = topology.face_nodes[faces]
@@ -42,6 +47,18 @@ def tractions_of(
         forces.append(share[:, None] * np.asarray(item.traction, float))
         of_curve.append(np.full(used.sum(), add_curve(item.history, item.stage, curves), np.int32))
     count = len(topology.node_position)
+    if boundaries.places:
+        nodes.append(boundaries.nodes)
+        forces.append(boundaries.kept[boundaries.nodes])
+        of_curve.append(np.zeros(len(boundaries.nodes), np.int32))
+    for place in boundaries.places:
+        for given in place.boundary.inputs:
+            if given.kind == "compliant":
+                shaken, force = wave_forces(case, topology, place.faces, given)
+                nodes.append(shaken)
+                forces.append(force)
+                number = add_record(case, given.record, place.boundary.stage, curves)
+                of_curve.append(np.full(len(shaken), number, np.int32))
     if not nodes:
         return {
             "load.first": np.zeros(count + 1, np.int32),

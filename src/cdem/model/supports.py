@@ -9,7 +9,8 @@ from numpy.typing import NDArray
 
 from cdem.case.case import Case
 from cdem.mesh.topology import Topology
-from cdem.model.curves import Curves, add_curve
+from cdem.model.boundaries import Boundaries
+from cdem.model.curves import Curves, add_curve, add_record
 from cdem.model.selection import select_nodes
 
 
@@ -26,9 +27,17 @@ def driven_nodes(supports: Mapping[str, NDArray]) -> NDArray[np.bool_]:
 
 
 def supports_of(
-    case: Case, topology: Topology, names: list[str], curves: Curves
+    case: Case,
+    topology: Topology,
+    names: list[str],
+    curves: Curves,
+    boundaries: Boundaries,
 ) -> dict[str, NDArray]:
-    """Rows of supported nodes: components, velocities, curves."""
+    """Rows of supported nodes: components, velocities, curves.
+
+    Supports of boundaries that have begun are left out; all nodes of boundaries have a row, as the
+    number of rows stays.
+    """
     count = len(topology.node_position)
     component = np.zeros((count, 3), np.int8)
     velocity = np.zeros((count, 3))
@@ -45,6 +54,8 @@ def supports_of(
         axes = ["xyz".index(c) for c in group.fix]
         hold(groups == names.index(name), axes, [0.0] * len(axes), 0)
     for index, item in enumerate(case.loads.supports):
+        if index in boundaries.ended:
+            continue
         nodes = select_nodes(case, topology, names, item, f"loads.supports.{index}")
         axes = ["xyz".index(c) for c in item.fix]
         hold(nodes, axes, [0.0] * len(axes), 0)
@@ -54,7 +65,18 @@ def supports_of(
         curve_of = add_curve(driven.history, driven.stage, curves)
         hold(nodes, axes, [driven.velocity[a] for a in axes], curve_of)
 
+    for place in boundaries.acting:
+        for given in place.boundary.inputs if not boundaries.held else []:
+            if given.kind == "rigid":
+                curve_of = add_record(case, given.record, place.boundary.stage, curves)
+                axes = [a for a in range(3) if given.direction[a]]
+                hold(place.nodes, [0, 1, 2], [0.0] * 3, 0)
+                hold(place.nodes, axes, [given.direction[a] for a in axes], curve_of)
+        if boundaries.held:
+            hold(place.nodes, [0, 1, 2], [0.0] * 3, 0)
+
     held = np.asarray(component.any(axis=1))
+    held[boundaries.nodes] = True
     row = np.full(count, -1, np.int32)
     row[held] = np.arange(held.sum())
     if not held.any():  # the core looks rows up; an empty table still needs one

@@ -11,11 +11,11 @@ from cdem._native import core as native
 from cdem.case.case import Case
 from cdem.case.laws import SURFACE_LAWS
 from cdem.errors import CaseError
-from cdem.mesh.element_shapes import lame_constants
 from cdem.mesh.topology import Topology
+from cdem.model.boundaries import impedances
 from cdem.model.curves import add_curve
 from cdem.model.faces import face_areas, face_normals
-from cdem.model.flat_arrays import Floats, table
+from cdem.model.flat_arrays import table
 from cdem.model.module import Built, Module, Parts
 from cdem.model.selection import select_faces
 
@@ -66,7 +66,7 @@ class SurfaceModel(Module):
         entry = np.repeat(np.arange(len(items)), [len(f) for f in faces])
         area = face_areas(t.node_position, t.face_nodes[face])
         normal = face_normals(t.node_position, t.face_nodes[face])
-        impedance = _impedances(parts)[t.face_group[face]]
+        impedance = impedances(case, parts.names)[t.face_group[face]]
         self.found = [(len(f), float(area[entry == i].sum())) for i, f in enumerate(faces)]
         corners = (t.face_nodes[face] >= 0).sum(axis=1)
         for kind, vertices in KINDS.items():
@@ -106,15 +106,3 @@ class SurfaceModel(Module):
 def _entries(case: Case) -> list[tuple[Any, ...]]:
     """Surface, law and stage of every entry."""
     return [(item.surface, item.law, item.stage) for _, item in case.surface_entries]
-
-
-def _impedances(parts: Parts) -> Floats:
-    """Density times speed of P and S waves of the rock of each group [kg/(m2 s)], shape (groups, 2)."""
-    case = parts.case
-    rocks = [case.materials[case.groups[name].material] for name in parts.names]
-    density = np.array([rock.density for rock in rocks])
-    young, poisson = (
-        np.array([getattr(r, k) for r in rocks]) for k in ("young_modulus", "poisson_ratio")
-    )
-    first, shear = lame_constants(young, poisson)
-    return np.sqrt(density * np.stack([first + 2 * shear, shear])).T

@@ -524,3 +524,5 @@ class Simulation(RunState):
         self.reference = own["simulation.reference"]
         self.watched = own["simulation.watched"]
         self.build.born = own.get("simulation.born", self.build.born)
+        kept = self.build.boundaries.kept
+        self.build.boundaries.kept = own.get("simulation.kept_reaction", kept)

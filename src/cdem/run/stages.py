@@ -110,6 +110,7 @@ def begin(sim: RunState) -> StageState:
         excavate(sim, stage.remove)
     change_bolts(sim, stage.name)
     begin_surfaces(sim, stage.name)
+    begin_boundaries(sim)
     sim.core.change_mass(is_lumped(stage))
     apply_settings(sim, index)
     hand_over(sim.core, sim.build.curves, sim.begins)
@@ -170,7 +171,7 @@ def fill(sim: RunState, names: list[str]) -> None:
     b, t = sim.build, sim.build.topology
     comes, out = nodes_of_groups(t, names), sim.core.fields()["node.out"] != 0
     moved = rows_of(sim.core, "node.motion").position - b.start_position
-    held = held_components(supports_of(sim.case, t, b.group_names, constant()))
+    held = held_components(supports_of(sim.case, t, b.group_names, constant(), b.boundaries))
     lie = places(t, comes, ~out, held, moved)
     if (node := folded(t, lie, comes)) >= 0:
         group = b.group_names[t.block_group[t.node_block[node]]]
@@ -209,6 +210,26 @@ def begin_surfaces(sim: RunState, stage: str) -> None:
     come = np.array([item.stage == stage for _, item in sim.case.surface_entries], np.int8)
     if come.any() and sim.stage_index > 0:
         sim.core.begin_surfaces(come)
+
+
+def begin_boundaries(sim: RunState) -> None:
+    """Let boundaries of this stage begin: their supports end, and the forces of these stay.
+
+    In a static stage the nodes of earlier boundaries are held where they are.
+    """
+    b = sim.build
+    if not sim.case.boundaries:
+        return
+    before = held_components(
+        supports_of(sim.case, b.topology, b.group_names, constant(), b.boundaries)
+    )
+    b.boundaries.follow(sim.case, sim.stage_index + 1)
+    after = held_components(
+        supports_of(sim.case, b.topology, b.group_names, constant(), b.boundaries)
+    )
+    reaction = sim.fields["reaction"]
+    b.boundaries.kept += np.where(before & ~after, reaction, 0.0)
+    sim.core.update_model(change(b))
 
 
 def release_part(sim: RunState, stage: StageState) -> bool:
@@ -333,6 +354,9 @@ def catch_up(sim: RunState) -> None:
                 change_value(sim, setting)
     if (last := sim.stage or sim.ended_stage) and last.handed_over:
         damp_locally(sim)
+    if sim.case.boundaries:
+        sim.build.boundaries.follow(sim.case, sim.begun)
+        sim.core.update_model(change(sim.build))
     hand_over(sim.core, sim.build.curves, sim.begins)
     added = {name for stage in sim.case.stages[: sim.begun] for name in stage.add}
     if added:

@@ -373,7 +373,11 @@ class RunState:
         """Arrays in a checkpoint besides those of the core, shape (nodes, 3)."""
         adds = any(stage.add for stage in self.case.stages)
         born = {"simulation.born": self.build.born} if adds else {}
-        return {"simulation.reference": self.reference, "simulation.watched": self.watched} | born
+        bears = (
+            {"simulation.kept_reaction": self.build.boundaries.kept} if self.case.boundaries else {}
+        )
+        watched = {"simulation.reference": self.reference, "simulation.watched": self.watched}
+        return watched | born | bears
 
     def attributes(self, row_sums: str, rows: int, frames: int) -> Attributes:
         """Data in a checkpoint besides arrays, after this many rows of histories and frames."""

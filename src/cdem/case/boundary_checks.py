@@ -1,0 +1,49 @@
+"""Checks of boundaries that need no mesh."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from cdem.case.boundaries_schema import Boundary
+from cdem.case.schema import CaseParts, Keys
+
+Problem = tuple[Keys, str]  # path, problem
+
+
+def boundary_problems(case: CaseParts) -> Iterator[Problem]:
+    """Contradictions between boundaries and the other parts of a case."""
+    names = [stage.name for stage in case.stages]
+    for i, boundary in enumerate(case.boundaries):
+        place = ("boundaries", i)
+        yield from _stage(case, boundary, (*place, "stage"), names)
+        if boundary.free_field is not None:
+            yield from _base(case, boundary, (*place, "free_field", "base"))
+
+
+def _stage(case: CaseParts, boundary: Boundary, place: Keys, names: list[str]) -> Iterator[Problem]:
+    if boundary.stage is not None and boundary.stage not in names:
+        yield place, f"no stage '{boundary.stage}'; the case has: {', '.join(names)}"
+        return
+    first = 0 if boundary.stage is None else names.index(boundary.stage)
+    if case.stages[first].mode == "static":
+        later = next((s.name for s in case.stages[first:] if s.mode == "dynamic"), "NAME")
+        yield (
+            place,
+            f"{boundary.name} would begin with the static stage {names[first]}: waves need a dynamic "
+            f"stage; write stage: {later}, and hold the faces with supports until then",
+        )
+    group = getattr(boundary.surface, "group", None)
+    if group in case.absent(first + 1):
+        yield place, f"{group} is not present in the stage {names[first]}"
+
+
+def _base(case: CaseParts, side: Boundary, place: Keys) -> Iterator[Problem]:
+    assert side.free_field is not None
+    base = next((b for b in case.boundaries if b.name == side.free_field.base), None)
+    if base is None or base is side:
+        others = ", ".join(b.name for b in case.boundaries if b is not side) or "none"
+        yield place, f"no boundary '{side.free_field.base}' beside this one; the case has: {others}"
+    elif base.free_field is not None:
+        yield place, f"{base.name} is a side itself; name the base below, quiet or rigid"
+    elif base.stage != side.stage:
+        yield place, f"{base.name} begins with another stage; give both the same stage"
