@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from cdem.seismic.processing import Processed
+
 if TYPE_CHECKING:
     from cdem._core import Core
 
@@ -57,6 +59,13 @@ def add_curve(
     if history is None:
         return 0
     curves.append(Curve([float(t) for t, _ in history], [float(f) for _, f in history], stage))
+    return len(curves) - 1
+
+
+def add_record(record: Processed, stage: str | None, curves: Curves) -> int:
+    """Index of the curve of a record, its velocity [m/s]: linear between samples, 0 before and after."""
+    times = (np.arange(len(record.velocity) + 1) * record.step).tolist()
+    curves.append(Curve(times, [0.0, *record.velocity[1:].tolist(), 0.0], stage))
     return len(curves) - 1
 
 
