@@ -21,6 +21,7 @@ FOLDERS = {
     "nodes": "sums, motion, time step, supports",
     "water": "module: pressures in open joints",
     "surface": "module: surface laws, one file each",
+    "columns": "module: ground beside sides",
     "contact/narrow_phase": "targets of vertices and edges",
     "contact/force": "semi-springs and semi-edges",
     "bonds": "bonded pairs, failure, release",
@@ -36,7 +37,7 @@ FOLDERS = {
 }
 """Folders with their contents, lowest first: a file includes its own folder and those before it."""
 HEIGHT = {name: height for height, name in enumerate(FOLDERS)}
-MODULES = ["bolts", "water", "surface"]
+MODULES = ["bolts", "water", "surface", "columns"]
 """Nobody outside of them names them, but core/model/modules.hpp."""
 DEEPEST = 8
 

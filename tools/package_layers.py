@@ -13,6 +13,7 @@ ROOT = Path(__file__).parent.parent / "src"
 
 FOLDERS = {
     "_version errors named units whole_files _instruction_sets _core_choice own_laws _core _native rows": "",
+    "seismic": "records of earthquakes: processing, measures, layered ground",
     "case": "the input: keys, types, checks, errors",
     "mesh": "elements, blocks, faces, edges; mesh files",
     "joints": "joint sets cut bodies into blocks",

@@ -63,6 +63,10 @@ StepLimit step_limit(const Model& m, const State& s) {
   // step still resolves curves, histories and ends of stages
   Real largest = highest_frequency_squared(m, s, false, limit);
   if (!(largest > 0)) largest = highest_frequency_squared(m, s, true, limit);
+  Modules::for_each([&]<class Module>() {
+    if constexpr (requires { Module::frequency_squared(given_of<Module>(m)); })
+      largest = std::max(largest, Module::frequency_squared(given_of<Module>(m)));
+  });
   // a dashpot of ratio xi at the highest frequency shortens the stable step by this factor
   const Real xi =
       m.stiffness_damping + m.contact_damping + 0.5 * m.damping.mass / std::sqrt(largest);

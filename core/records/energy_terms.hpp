@@ -52,6 +52,9 @@ inline constexpr EnergyTerm energy_terms[] = {
      .meaning = "work of loads, gravity and supports"},
     {.name = "water", .kind = EnergyKind::supplied, .meaning = "work of water pressure"},
     {.name = "surface", .kind = EnergyKind::supplied, .meaning = "work of surface laws"},
+    {.name = "columns",
+     .kind = EnergyKind::supplied,
+     .meaning = "work of the ground beside sides with a free field"},
 };
 inline constexpr std::size_t energy_term_count = std::size(energy_terms);
 

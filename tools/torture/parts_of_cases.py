@@ -77,6 +77,9 @@ bolts:
      length: 2, direction: [0, 0, -1], box: {min: [-9, -9, -9], max: [9, 9, 9]}}, plate: {stiffness: 1e8, strength: 1e5}}
   - {name: ring, type: bar, rings: {axis: [[2, 0, 2], [2, 2, 2]], spacing: 1, count: 3,
      angles: [90, 270], inside: late, length: 0.8}}
+records:
+  file: {file: wave.csv, kind: velocity, scale: 0.5, band: [1 Hz, 20 Hz], baseline: cubic}
+  listed: {samples: [0, 1, 3, 2, 0, -1, -2, -1, 0, 0, 0, 0], step: 1 ms, unit: cm/s2, baseline: none}
 loads:
   gravity: [0, 0, -9.81]
   tractions: [{surface: {group: rock, normal: [0, 0, 1]}, traction: [0, 0, -1e4],
@@ -84,6 +87,7 @@ loads:
   velocities:
     - {group: plug, velocity: [0.1, 0, 0], components: [x], history: [[0, 0], [1, 1]]}
     - {point: [0, 0, 3], velocity: [0, 0, 0]}
+    - {point: [4, 2, 3], velocity: [1, 0, 0], record: file, stage: end}
     - {box: {min: [3.9, -1, 2.9], max: [9, 9, 3.1]}, velocity: [0, 0, 0]}
     - {surface: {group: late, normal: [0, 0, 1]}, velocity: [0, 0, 0]}
   supports:
@@ -137,6 +141,8 @@ stages: [{name: d, mode: dynamic, duration: 0.01}]
 BESIDE = {
     "pressures.csv": "x,y,z,pressure\n0,0,0,1e4\n9,0,0,1e4\n0,9,0,1e4\n0,0,9,0\n9,9,9,0\n",
     "factor.csv": "time [ms], factor [%]\n0, 0\n5, 100\n",
+    "wave.csv": "time [s], velocity [cm/s]\n"
+    + "".join(f"{0.02 * i:.2f}, {math.sin(0.6 * i):.3f}\n" for i in range(64)),
     "discs.csv": "x,y,z,dip,dip_direction,radius\n1,1,1,30,90,1\n",
     "heights.asc": "ncols 3\nnrows 3\nxllcorner -5\nyllcorner -5\ncellsize 10\n" + "1 1 1\n" * 3,
 }

@@ -6,6 +6,7 @@ from typing import Annotated, Literal, cast
 
 from pydantic import Discriminator, Field, Tag, model_validator
 
+from cdem.case.columns_schema import FreeField
 from cdem.case.laws import SURFACE_LAWS, models
 from cdem.case.surface_schema import QUIET, Surface, SurfaceLoad
 from cdem.case.types import Direction3, Name, Part
@@ -41,12 +42,6 @@ class BaseInput(Part):
     def share(self) -> float:
         """Up-going wave, or velocity of a rigid base, over the velocity of the record [1]."""
         return 0.5 if self.kind == "compliant" and self.motion != "upgoing" else 1.0
-
-
-class FreeField(Part):
-    """Ground beside a side, which moves as columns of the rock at that side."""
-
-    base: Name = Field(description="Boundary with the input below the side")
 
 
 Inputs = Annotated[

@@ -17,6 +17,7 @@ from cdem.case.explain import explain, problems_of
 from cdem.case.history_file import with_histories
 from cdem.case.named_files import files_of
 from cdem.case.reader import load_case_data, plain, replace_at, resolve
+from cdem.case.record_file import with_records
 from cdem.case.schema import CaseParts, Stage
 from cdem.case.source import Source
 from cdem.case.stored import is_stored, outdated, renewed
@@ -48,7 +49,7 @@ class Case(CaseParts):
 
     def __init__(self, _source: Source | None = None, **data: Any) -> None:
         source, data = _source or Source(), plain(data, _source or Source())
-        data = with_histories(data, source)
+        data = with_records(with_histories(data, source), source)
         problems: list[checks.Problem] = outdated(data)
         data = renewed(data)
         _refuse_code(data, source)

@@ -14,6 +14,7 @@ from cdem.case.input_file import is_file
 from cdem.case.laws import BLOCK_LAWS, SURFACE_LAWS, block_contradiction
 from cdem.case.map_system import why_not
 from cdem.case.plausible import doubts
+from cdem.case.record_checks import record_contradictions, record_users
 from cdem.case.schema import CaseParts, Stage
 from cdem.case.softening import softening_problems
 from cdem.errors import CaseError
@@ -27,6 +28,8 @@ SETTABLE = (
     "water.",
 )  # another mesh or material is another model
 AT_START = ("velocity", "angular_velocity")  # of a group
+WHOLE = (("groups",), ("materials",), ("records",))
+"""Mappings whose entries are named elsewhere: a wrong one stays when the rest is checked."""
 STRENGTHS = {p.name for law in BLOCK_LAWS.values() for p in law.parameters if p.is_strength}
 """Parts of a material that a stage may change."""
 
@@ -61,6 +64,7 @@ def _names(case: CaseParts) -> Iterator[Problem]:
     yield from _surfaces(case)
     yield from boundary_problems(case)
     yield from _curves(case)
+    yield from record_contradictions(case)
     yield from _joints(case)
     yield from _unique_names(case)
 
@@ -364,7 +368,7 @@ def _unique_names(case: CaseParts) -> Iterator[Problem]:
 def without(data: dict[str, Any], problems: Iterable[Problem]) -> dict[str, Any]:
     """Remove wrong values, so that the rest of a case can be checked.
 
-    Groups, materials and entries of lists stay: without them other parts would look wrong.
+    Groups, materials, records and entries of lists stay: without them other parts would look wrong.
     """
     rest = deepcopy(data)
     for keys, _ in problems:
@@ -374,7 +378,7 @@ def without(data: dict[str, Any], problems: Iterable[Problem]) -> dict[str, Any]
             if isinstance(node, list) and isinstance(key, int) and key < len(node):
                 inside = node[key]
             node = inside
-        if isinstance(node, dict) and keys[:-1] not in (("groups",), ("materials",)):
+        if isinstance(node, dict) and keys[:-1] not in WHOLE:
             node.pop(keys[-1], None)
     return rest
 
@@ -430,6 +434,7 @@ def stage_settings(
     doubtful: list[Problem] = []
     known = list(known)
     fixed_values = trial.interfaces.fixed()
+    records = list(record_users(trial))
     for i, stage in enumerate(trial.stages):
         problems += _settings_of_one(trial, i, put)
         now = trial.interfaces.fixed()
@@ -438,6 +443,9 @@ def stage_settings(
                 fixed = f"{key!r} of an interface is fixed at the start and cannot change"
                 problems.append((("stages", i, "set"), fixed))
         fixed_values = now
+        if (used := list(record_users(trial))) != records:
+            problems.append((("stages", i, "set"), "records and their stages cannot change"))
+        records = used
         problems += [
             (("stages", i, "set"), f"gives {'.'.join(map(str, keys))}: {what}")
             for keys, what in _names(trial)

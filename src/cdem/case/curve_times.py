@@ -87,3 +87,6 @@ def _varying(case: CaseParts, stage: str | None) -> Iterator[tuple[Keys, str, fl
             last = max((i for i, row in enumerate(rows) if row[1] != rows[-1][1]), default=-1)
             if entry.stage == stage and last >= 0:
                 yield keys, key, rows[last + 1][0]
+        name = getattr(entry, "record", None)
+        if name in case.records and entry.stage == stage:
+            yield keys, "record", case.records[name].duration

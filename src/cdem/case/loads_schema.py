@@ -43,11 +43,24 @@ class PrescribedVelocity(Factored):
     point: Length3 | None = Field(None, description="The node nearest to this point [m]")
     box: Region | None = Field(None, description="All nodes in this box")
     components: Axes = Field(["x", "y", "z"], description="Driven directions")
-    velocity: Velocity3 = Field(description="Velocity [m/s]")
+    velocity: Velocity3 = Field(
+        description="Velocity [m/s]; with a record, the factors of its velocity along x, y, z"
+    )
+    record: Name | None = Field(
+        None,
+        description="A name under records, whose velocity the nodes follow from the begin of the stage",
+    )
+
+    @property
+    def has_curve(self) -> bool:
+        """Whether it changes over time."""
+        return super().has_curve or self.record is not None
 
     @model_validator(mode="after")
     def _one_selection(self) -> PrescribedVelocity:
         exactly_one(self, ("group", "surface", "point", "box"))
+        if self.record is not None and self.history is not None:
+            raise ValueError("give a history or a record, not both")
         return self
 
 

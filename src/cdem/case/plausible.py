@@ -9,6 +9,7 @@ from typing import Any
 
 from cdem.case.curve_times import in_static_stages
 from cdem.case.interface_schema import InterfacePair
+from cdem.case.record_checks import record_doubts
 from cdem.case.schema import CaseParts, Stage
 from cdem.case.types import Part, Stiffness
 from cdem.units import to_number
@@ -202,6 +203,8 @@ def doubts(case: CaseParts) -> tuple[list[Problem], list[Problem]]:
             if what:
                 (impossible if wrong else unusual).append((keys, what))
     unusual += _gravity(case)
+    for found, told in zip(record_doubts(case), (impossible, unusual), strict=True):
+        told += found
     unusual += in_static_stages(case)
     for index, stage in enumerate(case.stages):
         unusual += _local_damping(case, index, stage)

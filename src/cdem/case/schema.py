@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
-from pydantic import Discriminator, Field, Tag, model_validator
+from pydantic import Discriminator, Field, PrivateAttr, Tag, model_validator
 
 from cdem.case.bodies_schema import Model, exactly_one
 from cdem.case.bolts_schema import Bolts, BoltType
@@ -29,6 +29,8 @@ from cdem.case.types import (
     Velocity3,
 )
 from cdem.case.water_schema import Water
+from cdem.case.waves_schema import Record
+from cdem.seismic.processing import Processed
 
 Keys = tuple[str | int, ...]
 """Place of a value in a case."""
@@ -385,6 +387,7 @@ class CaseParts(Part):
     interfaces: Interfaces = Field(Interfaces(), description="Interfaces by pair of groups")
     loads: Loads = Field(Loads(), description="Actions from outside")
     boundaries: list[Boundary] = Field([], description="Quiet faces, and bases that are shaken")
+    records: dict[FileName, Record] = Field({}, description="Motions of the ground by name")
     initial_stress: list[InitialStress] = Field([], description="Stress at the start")
     water: Water | None = Field(None, description="Water in joints, pores and the open")
     bolts: list[Bolts] = Field([], description="Bolts and cables")
@@ -395,6 +398,17 @@ class CaseParts(Part):
     time: Time = Field(Time(), description="The time step")
     output: Output = Field(Output(), description="Results to write")
     histories: list[HistoryPoint] = Field([], description="Quantities recorded over time")
+
+    _kept_records: dict[str, Processed] = PrivateAttr(default_factory=dict)
+    """Processed records of the run that is continued, by name."""
+
+    def processed(self, name: str) -> Processed:
+        """A record ready for use, in SI; the same arrays at each call."""
+        return self._kept_records.get(name) or self.records[name].steps()[-1][1]
+
+    def keep_records(self, records: dict[str, Processed]) -> None:
+        """Use these processed records from now on: those of the run that is continued."""
+        self._kept_records = records
 
     @property
     def movable(self) -> list[str]:

@@ -48,6 +48,11 @@ class Timed(Part):
         values = {key: getattr(self, key, None) for key in ("history", "level")}
         return {key: rows for key, rows in values.items() if isinstance(rows, list)}
 
+    @property
+    def has_curve(self) -> bool:
+        """Whether it changes over time."""
+        return bool(self.curves)
+
     @model_validator(mode="after")
     def _times_increase(self) -> Timed:
         for key, rows in self.curves.items():
@@ -57,8 +62,10 @@ class Timed(Part):
                 raise ValueError(
                     f"{key}: times must be at least 0, the begin of stage {self.stage}"
                 )
-        if self.stage is not None and not self.curves and not self.acts_from_stage:
-            raise ValueError("stage is the start of a curve: give it with a history or level")
+        if self.stage is not None and not self.has_curve and not self.acts_from_stage:
+            raise ValueError(
+                "stage is the start of a curve: give it with a history or level, or a record"
+            )
         return self
 
 

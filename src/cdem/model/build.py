@@ -299,7 +299,9 @@ def _assemble(
     parts.arrays |= {f"support.{key}": value.ravel() for key, value in supports.items()}
     drop_gravity(case, topology, names, parts)
     parts.arrays |= node_loads_of(case, topology, names, curves, boundaries)
-    given = Parts(case, topology, laws, interface_of, curves, native.padded_stride, parts)
+    given = Parts(
+        case, topology, laws, interface_of, curves, boundaries, native.padded_stride, parts
+    )
     for module in modules.values():
         module.add_arrays(given)
     return parts

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from cdem.case.case import Case
+from cdem.seismic.processing import Processed
 
 if TYPE_CHECKING:
     from cdem._core import Core
@@ -62,11 +62,10 @@ def add_curve(
     return len(curves) - 1
 
 
-def add_record(case: Case, name: str, stage: str | None, curves: Curves) -> int:
-    """Index of the curve of a record's velocity [m/s]: 0 before its stage and after its end."""
-    record = case.processed(name)
-    times = [float(t) for t in record.step * np.arange(len(record.velocity) + 1)]
-    curves.append(Curve(times, [0.0, *map(float, record.velocity[1:]), 0.0], stage))
+def add_record(record: Processed, stage: str | None, curves: Curves) -> int:
+    """Index of the curve of a record, its velocity [m/s]: linear between samples, 0 before and after."""
+    times = (np.arange(len(record.velocity) + 1) * record.step).tolist()
+    curves.append(Curve(times, [0.0, *record.velocity[1:].tolist(), 0.0], stage))
     return len(curves) - 1
 
 

@@ -57,7 +57,7 @@ def node_loads_of(
                 shaken, force = wave_forces(case, topology, place.faces, given)
                 nodes.append(shaken)
                 forces.append(force)
-                number = add_record(case, given.record, place.boundary.stage, curves)
+                number = add_record(case.processed(given.record), place.boundary.stage, curves)
                 of_curve.append(np.full(len(shaken), number, np.int32))
     if not nodes:
         return {

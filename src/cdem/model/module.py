@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from cdem.case.case import Case
 from cdem.case.interface_schema import Interface
 from cdem.mesh.topology import Topology
+from cdem.model.boundaries import Boundaries
 from cdem.model.curves import Curves
 from cdem.model.flat_arrays import Assembly, Floats, Ints
 
@@ -32,6 +33,7 @@ class Parts:
         laws: Interfaces, see `interfaces_of`.
         interface_of: Index of the interface between two kinds of faces, shape (kinds, kinds).
         curves: Curves of the model; a module adds its own.
+        boundaries: Quiet and driven boundaries, and which of them act.
         stride: The core's function from item count to table stride.
         assembly: All arrays except those of modules; receives the arrays of modules.
     """
@@ -41,6 +43,7 @@ class Parts:
     laws: list[Interface]
     interface_of: NDArray[np.integer]
     curves: Curves
+    boundaries: Boundaries
     stride: Callable[[int], int]
     assembly: Assembly
 

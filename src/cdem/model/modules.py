@@ -5,11 +5,12 @@ from __future__ import annotations
 from cdem.case.case import Case
 from cdem.mesh.topology import Topology
 from cdem.model.bolts import BoltModel
+from cdem.model.columns import ColumnModel
 from cdem.model.module import Module
 from cdem.model.surface import SurfaceModel
 from cdem.model.water import WaterModel
 
-MODULES: tuple[type[Module], ...] = (BoltModel, WaterModel, SurfaceModel)
+MODULES: tuple[type[Module], ...] = (BoltModel, WaterModel, SurfaceModel, ColumnModel)
 """Every module once, as in `core/model/modules.hpp`."""
 
 

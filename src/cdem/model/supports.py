@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cdem.case.case import Case
+from cdem.case.loads_schema import PrescribedVelocity
 from cdem.mesh.topology import Topology
 from cdem.model.boundaries import Boundaries
 from cdem.model.curves import Curves, add_curve, add_record
@@ -24,6 +25,13 @@ def driven_nodes(supports: Mapping[str, NDArray]) -> NDArray[np.bool_]:
     """Nodes with a prescribed velocity, shape (nodes,); from `supports_of`."""
     row, driven = supports["row"], np.asarray(supports["velocity"].any(axis=1))
     return (row >= 0) & driven[row]
+
+
+def _curve_of(case: Case, driven: PrescribedVelocity, curves: Curves) -> int:
+    """Index of the curve of driven nodes."""
+    if driven.record is not None:
+        return add_record(case.processed(driven.record), driven.stage, curves)
+    return add_curve(driven.history, driven.stage, curves)
 
 
 def supports_of(
@@ -62,13 +70,13 @@ def supports_of(
     for index, driven in enumerate(case.loads.velocities):
         nodes = select_nodes(case, topology, names, driven, f"loads.velocities.{index}")
         axes = ["xyz".index(c) for c in driven.components]
-        curve_of = add_curve(driven.history, driven.stage, curves)
+        curve_of = _curve_of(case, driven, curves)
         hold(nodes, axes, [driven.velocity[a] for a in axes], curve_of)
 
     for place in boundaries.acting:
         for given in place.boundary.inputs if not boundaries.held else []:
             if given.kind == "rigid":
-                curve_of = add_record(case, given.record, place.boundary.stage, curves)
+                curve_of = add_record(case.processed(given.record), place.boundary.stage, curves)
                 axes = [a for a in range(3) if given.direction[a]]
                 hold(place.nodes, [0, 1, 2], [0.0] * 3, 0)
                 hold(place.nodes, axes, [given.direction[a] for a in axes], curve_of)

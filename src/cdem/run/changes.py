@@ -27,6 +27,8 @@ ENDS = ("duration", "until", "tolerance", "max_steps")
 CURVES = ("loads.*.*.stage", "water.fields.*.stage", "water.reservoir.stage")
 """Stages where curves start: naming the first stage means the same as naming none."""
 
+SHOWN = 300
+"""Most characters shown of a value."""
 Difference = tuple[str, Any, Any]  # path, old value, new value; None for a missing value
 
 
@@ -53,13 +55,20 @@ class Changes:
         if self.refused and not force:
             raise CaseError(
                 "\n".join(
-                    f"{case.where(path)}: {path}: is {now}, but the run was begun with {then}"
+                    f"{case.where(path)}: {path}: is {_short(now)}, but the run was begun with "
+                    f"{_short(then)}"
                     for path, then, now in self.refused
                 )
                 + "\nA resumed run may change durations, tolerances, stages that have not begun, and "
                 "output.every. Set other values back, continue with --force, or run the case "
                 "again in another folder (-o)"
             )
+        for path, _, _ in self.refused:
+            if path.startswith("records."):
+                raise CaseError(
+                    f"{case.where(path)}: {path}: cannot change, even with --force: a resumed run "
+                    "goes on with the processed record of its begin"
+                )
         lines = [f"{path} changes from {then} to {now}" for path, then, now in self.allowed]
         return lines + [
             f"{path} changes from {then} to {now} in the middle of the run (--force)"
@@ -90,6 +99,12 @@ def compare(then: dict[str, Any], now: dict[str, Any], begun: int) -> Changes:
         allowed = later or path in FREE or end in ENDS
         (found.allowed if allowed else found.refused).append((path, a, b))
     return found
+
+
+def _short(value: Any) -> str:
+    """A value as text, without the end of a long one."""
+    text = str(value)
+    return text if len(text) <= SHOWN else text[:SHOWN] + "..."
 
 
 def _is_of(path: str, patterns: tuple[str, ...]) -> bool:

@@ -33,6 +33,7 @@ from cdem.run.frame_files import FrameFiles, SurfaceFiles
 from cdem.run.histories import tracks
 from cdem.run.history_file import HistoryFile
 from cdem.run.law_fields import wanted_fields
+from cdem.run.record_files import write_records
 from cdem.run.state import Attributes, RunState
 from cdem.run.written_files import BEGUN, check_replaceable, refuse_links, remove_written
 from cdem.whole_files import disk_error, write_json, write_text
@@ -115,6 +116,7 @@ class Results:
         elif _inside(self.folder):
             raise _exists(self.folder)  # made by another run while this one built its model
         write_text(self.folder / "case.yaml", sim.given_case.dump())
+        sim.record_digests = write_records(self.folder, sim.given_case)
         self.log(sim.audit.text())
         self._open_series(sim, None, None)
 

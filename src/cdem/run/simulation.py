@@ -29,6 +29,7 @@ from cdem.run.flow_recorder import PREFIX, FlowRecorder
 from cdem.run.law_fields import large_strains, yielded_counts
 from cdem.run.notebook import watched
 from cdem.run.progress import Progress
+from cdem.run.record_files import check_records, with_kept_records
 from cdem.run.stage_state import StageState
 from cdem.run.state import Attributes, RunState, Setting
 
@@ -105,7 +106,11 @@ class Simulation(RunState):
                 Path(output), case.path_of("."), overwrite=overwrite, resume=resume
             )
         try:
+            digests: dict[str, str] = {}
+            if self.results and resume:
+                case, digests = with_kept_records(self.results.folder, case)
             super().__init__(case, threads)
+            self.record_digests = digests
             self.flow = FlowRecorder(self) if self.case.output.maps else None
             self._begin(resume=resume, force=force, strict=strict)
         except BaseException:
@@ -494,6 +499,7 @@ class Simulation(RunState):
                 f"{path}: is damaged (its case is invalid); run the case again with --overwrite"
             ) from error
         self.results.notes += changes.check(self.case, force=force)
+        check_records(self.results.folder, attributes.records, self.record_digests)
         self._restore_core(path, arrays, attributes)
         self.overlap = attributes.overlap
         self.stage_index, self.stage = attributes.stage_index, attributes.stage

@@ -57,6 +57,7 @@ class Attributes(BaseModel):
         core: Scalars of the core.
         overlap, stage_index, stage, ended_stage, finished_stages, wall_time,
         departures, settings: As in `RunState`.
+        records: SHA-256 of the files of processed records, by name.
         rows: Rows of the histories.
         row_sums: Their checksums, as in `HistoryFile`.
         frames: Frames recorded.
@@ -77,6 +78,7 @@ class Attributes(BaseModel):
     wall_time: float
     departures: list[Departure]
     settings: list[Setting] = Field(default_factory=list)
+    records: dict[str, str] = Field(default_factory=dict)  # older checkpoints lack it
     rows: NonNegativeInt
     row_sums: str
     frames: NonNegativeInt
@@ -124,6 +126,7 @@ class RunState:
         wall_time: Wall time spent in stages [s].
         settings: Values set by a script during the run.
         begins: Start times of the stages begun, by name [s].
+        record_digests: SHA-256 of the files of processed records in the result folder, by name.
         watched: Positions at the first look at the running static stage [m], shape (nodes, 3).
     """
 
@@ -147,6 +150,7 @@ class RunState:
         self.settings: list[Setting] = []
         self.begins: dict[str, float] = {}
         self.watched = self.build.start_position
+        self.record_digests: dict[str, str] = {}
         self.inputs: dict[str, str] = {}  # digests of the case and its files, where they are kept
 
     def __repr__(self) -> str:
@@ -395,6 +399,7 @@ class RunState:
             wall_time=self.wall_time,
             departures=self.departures,
             settings=self.settings,
+            records=self.record_digests,
             rows=rows,
             row_sums=row_sums,
             frames=frames,

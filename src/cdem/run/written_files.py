@@ -20,6 +20,7 @@ FOLDERS = {
     "frames": ["frame-*.vtkhdf", "elements.h5"],
     "surface": ["frame-*.vtkhdf"],
     "bolts": ["frame-*.vtkhdf"],
+    "records": ["*.csv"],
     "maps": ["*.tif", "*.qml", "*.tif.aux.xml"],  # cdem runout, with files that GIS put beside them
 }
 """Folders inside a result folder, and patterns of the names of their files."""

@@ -1,0 +1,431 @@
+"""Columns of ground beside the sides of a model with a free field, for the core."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cdem.case.boundaries_schema import BaseInput
+from cdem.case.case import Case
+from cdem.errors import CaseError
+from cdem.mesh.element_shapes import lame_constants
+from cdem.mesh.topology import Topology
+from cdem.model.boundaries import Place, impedances
+from cdem.model.curves import add_record
+from cdem.model.faces import face_areas, face_normals
+from cdem.model.flat_arrays import Floats
+from cdem.model.module import Built, Module, Parts
+
+SLANT = np.sin(np.radians(0.5))
+"""Most sine of the angle between a face of a side and its plane, or of a base and the horizontal."""
+LEAST_LAYER = 0.5
+"""Least height of a layer, as a fraction of the lowest face beside it."""
+STEP_OF_STRIPS = 0.5
+"""Change of the height of ground along a side with which another column begins, in faces."""
+UNEVEN = 0.1
+"""Relative difference of the heights of columns of one side that is told."""
+
+Indices = NDArray[np.integer]
+
+
+@dataclass
+class Strip:
+    """A part of a side with one column.
+
+    Attributes:
+        place: The boundary.
+        base: The boundary below.
+        faces: Its faces.
+        levels: Heights of the levels, ascending [m].
+        groups: Group of the rock of each layer, by number.
+    """
+
+    place: Place
+    base: Place
+    faces: Indices
+    levels: Floats
+    groups: Indices
+
+    @property
+    def height(self) -> float:
+        """Of the column [m]."""
+        return float(self.levels[-1] - self.levels[0])
+
+
+@dataclass
+class ColumnModel(Module):
+    """Columns of a model.
+
+    Attributes:
+        strips: One for each column; found with the first arrays.
+    """
+
+    name = "columns"
+    strips: list[Strip] | None = field(default=None)
+
+    @classmethod
+    def of(cls, case: Case, t: Topology, names: list[str]) -> ColumnModel:
+        return cls()
+
+    def add_arrays(self, parts: Parts) -> None:
+        case, t, out = parts.case, parts.topology, parts.assembly
+        if not any(b.free_field for b in case.boundaries):
+            return
+        if self.strips is None:
+            self.strips = strips_of(case, t, parts.boundaries.places)
+        sides = [_Sides(case, t, strip) for strip in self.strips]
+        inputs = [_inputs(parts, strip) for strip in self.strips]
+        levels = np.cumsum([0, *(len(strip.levels) for strip in self.strips)])
+        acting = parts.boundaries.begun if not parts.boundaries.held else set()
+        rows = [row for some in inputs for _, row in some]
+        layers = [len(layer) for side in sides for layer in side.layers]
+        out.counts |= {
+            "columns.count": len(self.strips),
+            "columns.side_count": sum(len(side.nodes) for side in sides),
+        }
+        out.arrays |= {
+            "columns.level_first": levels.astype(np.int32),
+            "columns.layer": np.concatenate([_layers(case, t, s) for s in self.strips]).ravel(),
+            "columns.mass": np.concatenate([_masses(case, t, s) for s in self.strips]),
+            "columns.foot": np.array([_foot(case, t, s) for s in self.strips]).ravel(),
+            "columns.input_first": np.cumsum([0, *map(len, inputs)]).astype(np.int32),
+            "columns.input_curve": np.array([c for some in inputs for c, _ in some], np.int32),
+            "columns.input": np.array(rows, float).reshape(-1, 4).ravel(),
+            "columns.acts": np.array(
+                [s.place.boundary.name in acting for s in self.strips], np.int8
+            ),
+            "columns.node": np.concatenate([side.nodes for side in sides]).astype(np.int32),
+            "columns.level": np.concatenate(
+                [side.level + first for side, first in zip(sides, levels, strict=False)]
+            ).astype(np.int32),
+            "columns.part": np.concatenate([side.part for side in sides]),
+            "columns.dashpot": np.concatenate([side.dashpots for side in sides]).ravel(),
+            "columns.layer_first": np.cumsum([0, *layers]).astype(np.int32),
+            "columns.side_layer": np.array(
+                [
+                    layer + first
+                    for side, first in zip(sides, levels, strict=False)
+                    for some in side.layers
+                    for layer in some
+                ],
+                np.int32,
+            ),
+            "columns.area": np.array(
+                [area for side in sides for some in side.areas for area in some]
+            ).ravel(),
+        }
+
+    def report(self, build: Built) -> list[dict[str, Any]]:
+        return [
+            {
+                "side": strip.place.boundary.name,
+                "base": strip.base.boundary.name,
+                "levels": len(strip.levels),
+                "height": strip.height,
+                "groups": [build.group_names[g] for g in dict.fromkeys(strip.groups.tolist())],
+            }
+            for strip in self.strips or []
+        ]
+
+    def lines(self, report: list[dict[str, Any]]) -> list[str]:
+        return [
+            f"  free field beside {one['side']}: a column of {one['height']:.4g} m with "
+            f"{one['levels']} levels, above {one['base']}"
+            for one in report
+        ]
+
+
+def strips_of(case: Case, t: Topology, places: list[Place]) -> list[Strip]:
+    """The strips of all sides with a free field.
+
+    Raises:
+        CaseError: A side is no vertical plane, has one level only, or has no base below it.
+    """
+    of_name = {place.boundary.name: place for place in places}
+    strips = []
+    for i, place in enumerate(places):
+        free = place.boundary.free_field
+        if free is None:
+            continue
+        where = f"{case.where(f'boundaries.{i}')}: boundaries.{i}: {place.boundary.name}"
+        base = of_name[free.base]
+        _check_plane(t, place, where)
+        for faces in _parts(t, place):
+            levels = _levels(t, faces)
+            if len(levels) < 2:
+                raise CaseError(f"{where} has nodes at one height only: a column needs two levels")
+            strips.append(Strip(place, base, faces, levels, _groups(t, faces, levels)))
+            _check_base(t, strips[-1], where)
+    return strips
+
+
+def uneven_sides(strips: list[Strip]) -> list[str]:
+    """Sides whose columns differ in height, for warnings."""
+    heights: dict[str, list[float]] = {}
+    for strip in strips:
+        heights.setdefault(strip.place.boundary.name, []).append(strip.height)
+    return [
+        f"boundary {name}: the ground along this side is {min(some):.4g} to {max(some):.4g} m high; "
+        "ground that rises along a side is no ground in one dimension: move the side, or hold it as a "
+        "plane of symmetry"
+        for name, some in heights.items()
+        if max(some) > (1 + UNEVEN) * min(some)
+    ]
+
+
+def _check_plane(t: Topology, place: Place, where: str) -> None:
+    normal = face_normals(t.node_position, t.face_nodes[place.faces])
+    mean = normal.mean(axis=0)
+    mean /= max(float(np.linalg.norm(mean)), 1e-300)
+    off = np.linalg.norm(np.cross(normal, mean), axis=1).max()
+    x = t.node_position[place.nodes] @ mean
+    size = np.sqrt(face_areas(t.node_position, t.face_nodes[place.faces]).max())
+    if off > SLANT or abs(mean[2]) > SLANT or np.ptp(x) > SLANT * size:
+        raise CaseError(
+            f"{where} is no vertical plane; a free field needs one: write an entry for each plane "
+            "side, or quiet: true alone"
+        )
+
+
+def _check_base(t: Topology, strip: Strip, where: str) -> None:
+    base = strip.base
+    normal = face_normals(t.node_position, t.face_nodes[base.faces])
+    if normal[:, 2].max() > -np.sqrt(1 - SLANT**2):
+        raise CaseError(
+            f"{where}: its base {base.boundary.name} is not horizontal and below the rock; a free "
+            "field needs such a base"
+        )
+    foot, size = strip.levels[0], strip.levels[1] - strip.levels[0]
+    if abs(t.node_position[base.nodes, 2] - foot).min() > 0.5 * size:
+        raise CaseError(
+            f"{where}: its lowest nodes lie at {foot:.6g} m, its base {base.boundary.name} does not; "
+            "a side reaches down to its base"
+        )
+
+
+def _vertices(t: Topology, faces: Indices) -> tuple[Indices, NDArray[np.bool_]]:
+    """Vertices of faces, the first again in place of a missing fourth, and which are there."""
+    vertex = t.face_nodes[faces]
+    return np.where(vertex < 0, vertex[:, :1], vertex), vertex >= 0
+
+
+def _parts(t: Topology, place: Place) -> list[Indices]:
+    """Faces of a side, cut along it into strips of ground of nearly equal height."""
+    vertex, _ = _vertices(t, place.faces)
+    normal = face_normals(t.node_position, t.face_nodes[place.faces]).mean(axis=0)
+    along = np.array([-normal[1], normal[0], 0.0])
+    x, z = t.node_position[vertex] @ along, t.node_position[vertex][:, :, 2]
+    width, tall = np.ptp(x, axis=1), float(np.median(np.ptp(z, axis=1)))
+    middle = x.mean(axis=1)
+    # the height of the ground, in bins of the width of a face
+    step = max(float(np.median(width)), 1e-9 * float(np.ptp(x) + 1))
+    number = np.floor((middle - x.min()) / step).astype(int)
+    top = np.full(number.max() + 1, -np.inf)
+    np.maximum.at(top, number, z.max(axis=1))
+    strip, last = np.zeros(len(top), int), np.nan
+    for k in range(len(top)):
+        strip[k] = strip[k - 1] if k else 0
+        if not np.isfinite(top[k]):
+            continue
+        if np.isfinite(last) and abs(top[k] - last) > STEP_OF_STRIPS * tall:
+            strip[k] += 1
+        if not np.isfinite(last) or strip[k] != strip[k - 1]:
+            last = top[k]
+    return [place.faces[strip[number] == k] for k in np.unique(strip[number])]
+
+
+def _levels(t: Topology, faces: Indices) -> Floats:
+    """Heights of the nodes of faces, without those that lie too near to the one below [m]."""
+    vertex, _ = _vertices(t, faces)
+    z = t.node_position[vertex][:, :, 2]
+    tall = np.repeat(np.ptp(z, axis=1)[:, None], vertex.shape[1], axis=1)
+    heights, lowest = z.ravel(), np.where(tall > 0, tall, np.inf).ravel()
+    order = np.argsort(heights, kind="stable")
+    levels: list[float] = []
+    for height, face in zip(heights[order], lowest[order], strict=True):
+        if not levels or height - levels[-1] > LEAST_LAYER * face:
+            levels.append(float(height))
+    top = float(heights.max())
+    if len(levels) > 1:
+        levels[-1] = top  # the ground ends where its nodes end
+    return np.array(levels)
+
+
+def _groups(t: Topology, faces: Indices, levels: Floats) -> Indices:
+    """Group with the largest part of the faces between two levels, for each layer."""
+    vertex, _ = _vertices(t, faces)
+    z = t.node_position[vertex][:, :, 2]
+    low, high = z.min(axis=1), z.max(axis=1)
+    area, group = face_areas(t.node_position, t.face_nodes[faces]), t.face_group[faces]
+    chosen = []
+    for below, above in pairwise(levels):
+        part = np.clip(np.minimum(high, above) - np.maximum(low, below), 0, None) / (high - low)
+        chosen.append(np.bincount(group, part * area).argmax())
+    return np.array(chosen)
+
+
+def _layers(case: Case, t: Topology, strip: Strip) -> Floats:
+    """Rows of layers: height, lambda + 2 mu, lambda, mu; the last one stands for none."""
+    rows = np.zeros((len(strip.levels), 4))
+    rows[:-1, 0] = np.diff(strip.levels)
+    rows[-1, :2] = 1.0
+    first, shear = lame_constants(*_of_rock(case, t, strip, "young_modulus", "poisson_ratio"))
+    rows[:-1, 1], rows[:-1, 2], rows[:-1, 3] = first + 2 * shear, first, shear
+    return rows
+
+
+def _masses(case: Case, t: Topology, strip: Strip) -> Floats:
+    """Mass of each level [kg/m2]."""
+    (density,) = _of_rock(case, t, strip, "density")
+    half = 0.5 * density * np.diff(strip.levels)
+    mass = np.zeros(len(strip.levels))
+    mass[:-1] += half
+    mass[1:] += half
+    return mass
+
+
+def _of_rock(case: Case, t: Topology, strip: Strip, *keys: str) -> list[Floats]:
+    rocks = [case.materials[case.groups[t.group_names[g]].material] for g in strip.groups]
+    return [np.array([getattr(rock, key) for rock in rocks]) for key in keys]
+
+
+def _foot(case: Case, t: Topology, strip: Strip) -> list[float]:
+    """Dashpots of the foot x y z [kg/(m2 s)], and 1 where its motion is given."""
+    if not strip.base.boundary.quiet:
+        return [0.0, 0.0, 0.0, 1.0]
+    p, s = impedances(case, t.group_names)[strip.groups[0]]
+    return [s, s, p, 0.0]
+
+
+def _inputs(parts: Parts, strip: Strip) -> list[tuple[int, list[float]]]:
+    """Curve and row of each motion at the foot, for a record of 1 m/s."""
+    base = strip.base.boundary
+    foot = np.array(_foot(parts.case, parts.topology, strip))
+
+    def row(given: BaseInput) -> list[float]:
+        motion = given.share * np.asarray(given.direction, float)
+        return [*(motion if given.kind == "rigid" else 2 * foot[:3] * motion), 0.0]
+
+    return [
+        (add_record(parts.case.processed(given.record), base.stage, parts.curves), row(given))
+        for given in base.inputs
+    ]
+
+
+class _Sides:
+    """Nodes of a strip: their levels, dashpots, and shares of the faces in each layer."""
+
+    def __init__(self, case: Case, t: Topology, strip: Strip) -> None:
+        vertex, there = _vertices(t, strip.faces)
+        self.nodes, of = np.unique(vertex, return_inverse=True)
+        of = of.reshape(vertex.shape)
+        z = t.node_position[self.nodes, 2]
+        self.level = np.clip(
+            np.searchsorted(strip.levels, z, side="right") - 1, 0, len(strip.levels) - 2
+        )
+        below, above = strip.levels[self.level], strip.levels[self.level + 1]
+        self.part = np.clip((z - below) / (above - below), 0.0, 1.0)
+        self.dashpots = self._dashpots(case, t, strip, of, there)
+        shares = self._shares(t, strip, vertex, there, of)
+        self.layers = [sorted(share) for share in shares]
+        self.areas = [[share[k] for k in sorted(share)] for share in shares]
+
+    def _dashpots(
+        self, case: Case, t: Topology, strip: Strip, of: Indices, there: NDArray[np.bool_]
+    ) -> Floats:
+        """Rows of matrices, xx yy zz xy yz zx and two pads [kg/s], as `core/surface` has them."""
+        faces = strip.faces
+        normal = face_normals(t.node_position, t.face_nodes[faces])
+        z = impedances(case, t.group_names)[t.face_group[faces]]
+        share = face_areas(t.node_position, t.face_nodes[faces]) / there.sum(axis=1)
+        rows = np.zeros((len(faces), 8))
+        rows[:, :3] = z[:, 1:]
+        for k, (a, b) in enumerate(((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (2, 0))):
+            rows[:, k] += (z[:, 0] - z[:, 1]) * normal[:, a] * normal[:, b]
+        rows *= share[:, None]
+        sums = np.zeros((len(self.nodes), 8))
+        for k in range(of.shape[1]):
+            np.add.at(sums, of[there[:, k], k], rows[there[:, k]])
+        return sums
+
+    def _shares(
+        self, t: Topology, strip: Strip, vertex: Indices, there: NDArray[np.bool_], of: Indices
+    ) -> list[dict[int, Floats]]:
+        """For each node the area vector of its share in layers, by layer [m2]."""
+        normal = face_normals(t.node_position, t.face_nodes[strip.faces])
+        across = normal.mean(axis=0)
+        along = np.array([-across[1], across[0], 0.0]) / np.hypot(across[0], across[1])
+        out: list[dict[int, Floats]] = [{} for _ in self.nodes]
+        for f in range(len(strip.faces)):
+            corners = int(there[f].sum())
+            x = t.node_position[vertex[f, :corners]]
+            plane = np.stack([x @ along, x[:, 2]], axis=1)
+            for layer, weights in shape_integrals(plane, strip.levels).items():
+                for k in range(corners):
+                    row = np.zeros(4)
+                    row[:2] = weights[k] * normal[f, :2]
+                    mine = out[of[f, k]]
+                    mine[layer] = mine.get(layer, np.zeros(4)) + row
+        return out
+
+
+def shape_integrals(corners: Floats, levels: Floats) -> dict[int, Floats]:
+    """Integrals of the shape functions of a face over its parts between levels.
+
+    A quadrilateral counts as four triangles about its middle; the parts of it that lie in one layer
+    have the integrals of its bilinear functions if it is a parallelogram.
+
+    Args:
+        corners: Corners in the plane of the face, the second number upward [m], shape (3 or 4, 2).
+        levels: Heights of the levels, ascending [m]; the outermost layers take all beyond.
+
+    Returns:
+        By number of the layer, integral for each corner [m2], shape (3 or 4,).
+    """
+    count = len(corners)
+    values = np.eye(count)
+    triangles = [[0, 1, 2]]
+    if count == 4:
+        corners = np.vstack([corners, corners.mean(axis=0)])
+        values = np.vstack([values, np.full(4, 0.25)])
+        triangles = [[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]]
+    points = np.hstack([corners, values])
+    found: dict[int, Floats] = {}
+    inner = levels[1:-1]
+    for triangle in triangles:
+        rest = points[triangle]
+        first = int(np.searchsorted(inner, rest[:, 1].min(), side="right"))
+        last = int(np.searchsorted(inner, rest[:, 1].max(), side="left"))
+        for layer in range(first, last + 1):
+            part = rest
+            if layer < last:
+                part, rest = _below(rest, inner[layer]), _below(rest, inner[layer], sign=-1)
+            if len(part) > 2:
+                found[layer] = found.get(layer, np.zeros(count)) + _integral(part)
+    return found
+
+
+def _below(polygon: Floats, height: float, sign: int = 1) -> Floats:
+    """The part of a convex polygon below a height (or above it), with its values."""
+    out = []
+    for a, b in zip(polygon, np.roll(polygon, -1, axis=0), strict=True):
+        da, db = sign * (height - a[1]), sign * (height - b[1])
+        if da >= 0:
+            out.append(a)
+        if (da > 0 > db) or (da < 0 < db):
+            out.append(a + da / (da - db) * (b - a))
+    return np.array(out).reshape(-1, polygon.shape[1])
+
+
+def _integral(polygon: Floats) -> Floats:
+    """Integral of values that are linear over a convex polygon."""
+    total = np.zeros(polygon.shape[1] - 2)
+    a = polygon[0]
+    for b, c in pairwise(polygon[1:]):
+        area = 0.5 * abs((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]))
+        total += area / 3 * (a[2:] + b[2:] + c[2:])
+    return total

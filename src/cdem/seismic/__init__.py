@@ -1,0 +1,1 @@
+"""Signals of earthquakes and blasts: files, processing, measures, response of layered ground."""
