@@ -26,6 +26,8 @@ LEAST_LAYER = 0.5
 """Least height of a layer, as a fraction of the lowest face beside it."""
 STEP_OF_STRIPS = 0.5
 """Change of the height of ground along a side with which another column begins, in faces."""
+SAME_HEIGHT = 1e-6
+"""Distance from the foot of a layer that is none, as a fraction of its height."""
 UNEVEN = 0.1
 """Relative difference of the heights of columns of one side that is told."""
 
@@ -36,24 +38,46 @@ Indices = NDArray[np.integer]
 class Strip:
     """A part of a side with one column.
 
+    Where two groups lie on each other there are two levels at one height, and a layer without
+    height between them: the bond of both.
+
     Attributes:
         place: The boundary.
         base: The boundary below.
         faces: Its faces.
-        levels: Heights of the levels, ascending [m].
-        groups: Group of the rock of each layer, by number.
+        heights: Different heights of the levels, ascending [m].
+        groups: Group of the rock above each height but the last, by number.
+        bonds: By index of a height, normal and shear stiffness of the bond there [Pa/m].
     """
 
     place: Place
     base: Place
     faces: Indices
-    levels: Floats
+    heights: Floats
     groups: Indices
+    bonds: dict[int, tuple[float, float]] = field(default_factory=dict)
 
     @property
     def height(self) -> float:
         """Of the column [m]."""
-        return float(self.levels[-1] - self.levels[0])
+        return float(self.heights[-1] - self.heights[0])
+
+    @property
+    def count(self) -> int:
+        """Number of levels."""
+        return len(self.heights) + len(self.changes)
+
+    @property
+    def changes(self) -> list[int]:
+        """Indices of heights where the group changes."""
+        return [i for i in range(1, len(self.groups)) if self.groups[i] != self.groups[i - 1]]
+
+    @property
+    def foot_of(self) -> Indices:
+        """Number of the level at the foot of each layer of rock."""
+        steps = np.zeros(len(self.groups), int)
+        steps[self.changes] = 1
+        return np.arange(len(self.groups)) + np.cumsum(steps)
 
 
 @dataclass
@@ -77,9 +101,11 @@ class ColumnModel(Module):
             return
         if self.strips is None:
             self.strips = strips_of(case, t, parts.boundaries.places)
+            for strip in self.strips:
+                _find_bonds(parts, strip)
         sides = [_Sides(case, t, strip) for strip in self.strips]
         inputs = [_inputs(parts, strip) for strip in self.strips]
-        levels = np.cumsum([0, *(len(strip.levels) for strip in self.strips)])
+        levels = np.cumsum([0, *(strip.count for strip in self.strips)])
         acting = parts.boundaries.begun if not parts.boundaries.held else set()
         rows = [row for some in inputs for _, row in some]
         layers = [len(layer) for side in sides for layer in side.layers]
@@ -124,7 +150,7 @@ class ColumnModel(Module):
             {
                 "side": strip.place.boundary.name,
                 "base": strip.base.boundary.name,
-                "levels": len(strip.levels),
+                "levels": strip.count,
                 "height": strip.height,
                 "groups": [build.group_names[g] for g in dict.fromkeys(strip.groups.tolist())],
             }
@@ -155,10 +181,10 @@ def strips_of(case: Case, t: Topology, places: list[Place]) -> list[Strip]:
         base = of_name[free.base]
         _check_plane(t, place, where)
         for faces in _parts(t, place):
-            levels = _levels(t, faces)
-            if len(levels) < 2:
+            heights = _heights(t, faces)
+            if len(heights) < 2:
                 raise CaseError(f"{where} has nodes at one height only: a column needs two levels")
-            strips.append(Strip(place, base, faces, levels, _groups(t, faces, levels)))
+            strips.append(Strip(place, base, faces, heights, _groups(t, faces, heights)))
             _check_base(t, strips[-1], where)
     return strips
 
@@ -199,7 +225,7 @@ def _check_base(t: Topology, strip: Strip, where: str) -> None:
             f"{where}: its base {base.boundary.name} is not horizontal and below the rock; a free "
             "field needs such a base"
         )
-    foot, size = strip.levels[0], strip.levels[1] - strip.levels[0]
+    foot, size = strip.heights[0], strip.heights[1] - strip.heights[0]
     if abs(t.node_position[base.nodes, 2] - foot).min() > 0.5 * size:
         raise CaseError(
             f"{where}: its lowest nodes lie at {foot:.6g} m, its base {base.boundary.name} does not; "
@@ -238,7 +264,7 @@ def _parts(t: Topology, place: Place) -> list[Indices]:
     return [place.faces[strip[number] == k] for k in np.unique(strip[number])]
 
 
-def _levels(t: Topology, faces: Indices) -> Floats:
+def _heights(t: Topology, faces: Indices) -> Floats:
     """Heights of the nodes of faces, without those that lie too near to the one below [m]."""
     vertex, _ = _vertices(t, faces)
     z = t.node_position[vertex][:, :, 2]
@@ -255,36 +281,72 @@ def _levels(t: Topology, faces: Indices) -> Floats:
     return np.array(levels)
 
 
-def _groups(t: Topology, faces: Indices, levels: Floats) -> Indices:
-    """Group with the largest part of the faces between two levels, for each layer."""
+def _groups(t: Topology, faces: Indices, heights: Floats) -> Indices:
+    """Group with the largest part of the faces between two heights, for each layer."""
     vertex, _ = _vertices(t, faces)
     z = t.node_position[vertex][:, :, 2]
     low, high = z.min(axis=1), z.max(axis=1)
     area, group = face_areas(t.node_position, t.face_nodes[faces]), t.face_group[faces]
     chosen = []
-    for below, above in pairwise(levels):
+    for below, above in pairwise(heights):
         part = np.clip(np.minimum(high, above) - np.maximum(low, below), 0, None) / (high - low)
         chosen.append(np.bincount(group, part * area).argmax())
     return np.array(chosen)
 
 
 def _layers(case: Case, t: Topology, strip: Strip) -> Floats:
-    """Rows of layers: height, lambda + 2 mu, lambda, mu; the last one stands for none."""
-    rows = np.zeros((len(strip.levels), 4))
-    rows[:-1, 0] = np.diff(strip.levels)
-    rows[-1, :2] = 1.0
+    """Rows of layers, by the level at their foot: height, lambda + 2 mu, lambda, mu.
+
+    A bond has a height of 1 and its stiffness; above the last level there is none.
+    """
+    rows = np.zeros((strip.count, 4))
+    rows[:, :2] = 1.0
     first, shear = lame_constants(*_of_rock(case, t, strip, "young_modulus", "poisson_ratio"))
-    rows[:-1, 1], rows[:-1, 2], rows[:-1, 3] = first + 2 * shear, first, shear
+    rows[strip.foot_of] = np.stack(
+        [np.diff(strip.heights), first + 2 * shear, first, shear], axis=1
+    )
+    for i, (normal, across) in strip.bonds.items():
+        rows[strip.foot_of[i] - 1] = [1.0, normal, 0.0, across]
     return rows
+
+
+def _find_bonds(parts: Parts, strip: Strip) -> None:
+    """Set the stiffness of the bonds between the groups of a strip.
+
+    Raises:
+        CaseError: Two groups are not bonded.
+    """
+    t, out = parts.topology, parts.assembly
+    vertex, _ = _vertices(t, strip.faces)
+    beside = np.zeros(len(t.node_position), bool)
+    beside[vertex] = True
+    for i in strip.changes:
+        pair_of = {int(g) for g in strip.groups[i - 1 : i + 1]}
+        found = []
+        for kind, faces in out.pair_faces.items():
+            some = np.array([set(t.face_group[pair].tolist()) == pair_of for pair in faces], bool)
+            nodes = t.face_nodes[faces.reshape(-1, 2)[:, 0]]
+            some &= (beside[nodes] & (nodes >= 0)).any(axis=1)
+            table = out.arrays[f"{kind}.stiffness"].reshape(2, -1)
+            found.append(table[:, : len(faces)][:, some])
+        both = np.concatenate(found, axis=1)
+        if not both.size:
+            below, above = (t.group_names[g] for g in strip.groups[i - 1 : i + 1])
+            raise CaseError(
+                f"{parts.case.where('boundaries')}: boundaries: {strip.place.boundary.name}: {above} "
+                f"is not bonded to {below} below it; ground with a free field holds together: give "
+                "their interface cohesion and tensile_strength"
+            )
+        strip.bonds[i] = (float(both[0].mean()), float(both[1].mean()))
 
 
 def _masses(case: Case, t: Topology, strip: Strip) -> Floats:
     """Mass of each level [kg/m2]."""
     (density,) = _of_rock(case, t, strip, "density")
-    half = 0.5 * density * np.diff(strip.levels)
-    mass = np.zeros(len(strip.levels))
-    mass[:-1] += half
-    mass[1:] += half
+    half = 0.5 * density * np.diff(strip.heights)
+    mass = np.zeros(strip.count)
+    mass[strip.foot_of] += half
+    mass[strip.foot_of + 1] += half
     return mass
 
 
@@ -323,16 +385,24 @@ class _Sides:
         vertex, there = _vertices(t, strip.faces)
         self.nodes, of = np.unique(vertex, return_inverse=True)
         of = of.reshape(vertex.shape)
-        z = t.node_position[self.nodes, 2]
-        self.level = np.clip(
-            np.searchsorted(strip.levels, z, side="right") - 1, 0, len(strip.levels) - 2
-        )
-        below, above = strip.levels[self.level], strip.levels[self.level + 1]
-        self.part = np.clip((z - below) / (above - below), 0.0, 1.0)
+        layer = self._layers(t, strip)
+        below, above = strip.heights[layer], strip.heights[layer + 1]
+        self.level = strip.foot_of[layer]
+        self.part = np.clip((t.node_position[self.nodes, 2] - below) / (above - below), 0.0, 1.0)
         self.dashpots = self._dashpots(case, t, strip, of, there)
         shares = self._shares(t, strip, vertex, there, of)
         self.layers = [sorted(share) for share in shares]
         self.areas = [[share[k] for k in sorted(share)] for share in shares]
+
+    def _layers(self, t: Topology, strip: Strip) -> Indices:
+        """Layer of each node: the one above its height, or below where its own rock ends."""
+        z, last = t.node_position[self.nodes, 2], len(strip.groups) - 1
+        layer = np.clip(np.searchsorted(strip.heights, z, side="right") - 1, 0, last)
+        own = t.block_group[t.node_block[self.nodes]]
+        at_foot = z - strip.heights[layer] < SAME_HEIGHT * np.diff(strip.heights)[layer]
+        ends = at_foot & (layer > 0) & (strip.groups[layer] != own)
+        ends &= strip.groups[np.maximum(layer - 1, 0)] == own
+        return np.where(ends, layer - 1, layer)
 
     def _dashpots(
         self, case: Case, t: Topology, strip: Strip, of: Indices, there: NDArray[np.bool_]
@@ -364,7 +434,8 @@ class _Sides:
             corners = int(there[f].sum())
             x = t.node_position[vertex[f, :corners]]
             plane = np.stack([x @ along, x[:, 2]], axis=1)
-            for layer, weights in shape_integrals(plane, strip.levels).items():
+            for number, weights in shape_integrals(plane, strip.heights).items():
+                layer = int(strip.foot_of[number])
                 for k in range(corners):
                     row = np.zeros(4)
                     row[:2] = weights[k] * normal[f, :2]
