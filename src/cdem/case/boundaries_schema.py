@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Annotated, Literal, cast
 
 from pydantic import Discriminator, Field, Tag, model_validator
@@ -39,9 +40,10 @@ class BaseInput(Part):
         return self
 
     @property
-    def share(self) -> float:
-        """Up-going wave, or velocity of a rigid base, over the velocity of the record [1]."""
-        return 0.5 if self.kind == "compliant" and self.motion != "upgoing" else 1.0
+    def motion_of_record(self) -> list[float]:
+        """Velocity of the up-going wave, or of a rigid base, for a record of 1 m/s [m/s]."""
+        share = 0.5 if self.kind == "compliant" and self.motion != "upgoing" else 1.0
+        return [share * part / math.hypot(*self.direction) for part in self.direction]
 
 
 Inputs = Annotated[

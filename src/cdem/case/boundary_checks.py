@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 from cdem.case.boundaries_schema import Boundary
 from cdem.case.schema import CaseParts, Keys
+from cdem.case.surface_schema import surface_groups
 
 Problem = tuple[Keys, str]  # path, problem
 
@@ -16,6 +17,14 @@ def boundary_problems(case: CaseParts) -> Iterator[Problem]:
     for i, boundary in enumerate(case.boundaries):
         place = ("boundaries", i)
         yield from _stage(case, boundary, (*place, "stage"), names)
+        for k, given in enumerate(boundary.inputs):
+            if given.record not in case.records:
+                at = (k,) if isinstance(boundary.input, list) else ()
+                known = ", ".join(case.records) or "none"
+                yield (
+                    (*place, "input", *at, "record"),
+                    f"no record '{given.record}'; the case has: {known}",
+                )
         if boundary.free_field is not None:
             yield from _base(case, boundary, (*place, "free_field", "base"))
 
@@ -32,8 +41,7 @@ def _stage(case: CaseParts, boundary: Boundary, place: Keys, names: list[str]) -
             f"{boundary.name} would begin with the static stage {names[first]}: waves need a dynamic "
             f"stage; write stage: {later}, and hold the faces with supports until then",
         )
-    group = getattr(boundary.surface, "group", None)
-    if group in case.absent(first + 1):
+    for group in set(surface_groups(boundary.surface)) & set(case.absent(first + 1)):
         yield place, f"{group} is not present in the stage {names[first]}"
 
 

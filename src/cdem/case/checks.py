@@ -17,6 +17,7 @@ from cdem.case.plausible import doubts
 from cdem.case.record_checks import record_contradictions, record_users
 from cdem.case.schema import CaseParts, Stage
 from cdem.case.softening import softening_problems
+from cdem.case.surface_schema import surface_groups
 from cdem.errors import CaseError
 
 Problem = tuple[tuple[str | int, ...], str]  # path, problem
@@ -269,8 +270,8 @@ def _curves(case: CaseParts) -> Iterator[Problem]:
             yield (*keys, "stage"), f"no stage '{entry.stage}'; the case has: {there}"
             continue
         surface = getattr(entry, "surface", None)
-        group = getattr(surface, "group", getattr(entry, "group", None))
-        if group in case.absent(names.index(entry.stage) + 1):
+        groups = surface_groups(surface) or [getattr(entry, "group", None) or ""]
+        for group in set(groups) & set(case.absent(names.index(entry.stage) + 1)):
             yield (*keys, "stage"), f"{group} is not present in the stage {entry.stage}"
 
 
@@ -304,11 +305,11 @@ def _group_names(case: CaseParts) -> Iterator[tuple[tuple[str | int, ...], str]]
             if getattr(load, "group", None) is not None:
                 yield ("loads", kind, i, "group"), load.group
             surface = getattr(load, "surface", None)
-            if surface is not None and not isinstance(surface, str):
-                yield ("loads", kind, i, "surface", "group"), surface.group
+            for name in surface_groups(surface):
+                yield ("loads", kind, i, "surface", "group"), name
     for i, boundary in enumerate(case.boundaries):
-        if not isinstance(boundary.surface, str):
-            yield ("boundaries", i, "surface", "group"), boundary.surface.group
+        for name in surface_groups(boundary.surface):
+            yield ("boundaries", i, "surface", "group"), name
     for i, history in enumerate(case.histories):
         if history.group is not None:
             yield ("histories", i, "group"), history.group
@@ -319,8 +320,8 @@ def _groups_of_bolts(case: CaseParts) -> Iterator[tuple[tuple[str | int, ...], s
     for i, bolts in enumerate(case.bolts):
         if bolts.rings is not None and bolts.rings.inside is not None:
             yield ("bolts", i, "rings", "inside"), bolts.rings.inside
-        if bolts.pattern is not None and not isinstance(bolts.pattern.surface, str):
-            yield ("bolts", i, "pattern", "surface", "group"), bolts.pattern.surface.group
+        for name in surface_groups(bolts.pattern and bolts.pattern.surface):
+            yield ("bolts", i, "pattern", "surface", "group"), name
 
 
 def _listed_names(case: CaseParts) -> Iterator[tuple[tuple[str | int, ...], str]]:

@@ -15,10 +15,19 @@ QUIET = "quiet"
 
 
 class FacesOfGroup(Part):
-    """The outer faces of a group with one outward direction."""
+    """The outer faces of a group, or of several, with one outward direction."""
 
-    group: Name = Field(description="Group")
+    group: Annotated[
+        Annotated[Name, Tag("one")]
+        | Annotated[Annotated[list[Name], Field(min_length=1)], Tag("some")],
+        Discriminator(lambda value: "some" if isinstance(value, list) else "one"),
+    ] = Field(description="Group, or a list of groups")
     normal: Direction3 = Field(description="Outward normal of the faces [1]")
+
+    @property
+    def groups(self) -> list[str]:
+        """All groups."""
+        return self.group if isinstance(self.group, list) else [self.group]
 
     @model_validator(mode="after")
     def _normal_has_a_direction(self) -> FacesOfGroup:
@@ -35,6 +44,11 @@ Surface = Annotated[
     Annotated[Name, Tag("name")] | Annotated[FacesOfGroup, Tag("faces")],
     Discriminator(_surface_kind),
 ]
+
+
+def surface_groups(surface: object) -> list[str]:
+    """Groups that a surface names."""
+    return surface.groups if isinstance(surface, FacesOfGroup) else []
 
 
 class SurfaceLoad(Factored):

@@ -160,7 +160,7 @@ def wave_forces(
     Returns:
         Nodes, ascending, and their forces for a record of 1 m/s [N], shape (nodes, 3).
     """
-    direction = given.share * np.asarray(given.direction, float)
+    direction = np.array(given.motion_of_record)
     vertex = topology.face_nodes[faces]
     used = vertex >= 0
     normal = face_normals(topology.node_position, vertex)

@@ -369,7 +369,7 @@ def _inputs(parts: Parts, strip: Strip) -> list[tuple[int, list[float]]]:
     foot = np.array(_foot(parts.case, parts.topology, strip))
 
     def row(given: BaseInput) -> list[float]:
-        motion = given.share * np.asarray(given.direction, float)
+        motion = np.array(given.motion_of_record)
         return [*(motion if given.kind == "rigid" else 2 * foot[:3] * motion), 0.0]
 
     return [

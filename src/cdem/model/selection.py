@@ -61,12 +61,13 @@ def select_faces(
                 f"{case.where(path)}: {path}: no surface {surface!r} in the model; it has: {known}"
             )
         return topology.surfaces[surface]
-    if surface.group not in names:
-        raise CaseError(
-            f"{case.where(path)}: {path}.group: no group {surface.group!r} in the model; it has: "
-            f"{', '.join(names)}"
-        )
-    free = topology.face_group == names.index(surface.group)
+    for group in surface.groups:
+        if group not in names:
+            raise CaseError(
+                f"{case.where(path)}: {path}.group: no group {group!r} in the model; it has: "
+                f"{', '.join(names)}"
+            )
+    free = np.isin(topology.face_group, [names.index(group) for group in surface.groups])
     free[topology.pair_faces.ravel()] = False  # faces touching another block are inside the rock
     faces = np.flatnonzero(free)
     normal = face_normals(topology.node_position, topology.face_nodes[faces])

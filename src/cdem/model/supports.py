@@ -74,14 +74,13 @@ def supports_of(
         hold(nodes, axes, [driven.velocity[a] for a in axes], curve_of)
 
     for place in boundaries.acting:
-        for given in place.boundary.inputs if not boundaries.held else []:
-            if given.kind == "rigid":
-                curve_of = add_record(case.processed(given.record), place.boundary.stage, curves)
-                axes = [a for a in range(3) if given.direction[a]]
-                hold(place.nodes, [0, 1, 2], [0.0] * 3, 0)
-                hold(place.nodes, axes, [given.direction[a] for a in axes], curve_of)
-        if boundaries.held:
+        rigid = [given for given in place.boundary.inputs if given.kind == "rigid"]
+        if boundaries.held or rigid:
             hold(place.nodes, [0, 1, 2], [0.0] * 3, 0)
+        for given in rigid if not boundaries.held else []:
+            curve_of = add_record(case.processed(given.record), place.boundary.stage, curves)
+            axes = [a for a in range(3) if given.direction[a]]
+            hold(place.nodes, axes, [given.motion_of_record[a] for a in axes], curve_of)
 
     held = np.asarray(component.any(axis=1))
     held[boundaries.nodes] = True
