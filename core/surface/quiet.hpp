@@ -11,17 +11,10 @@ template <class T>
 struct Quiet {
   static constexpr LawText text{.name = "quiet",
                                 .meaning = "Viscous boundary that absorbs outgoing waves"};
-  static constexpr std::array parameters{
-      Parameter{.name = "part",
-                .symbol = "a",
-                .unit = "1",
-                .meaning = "Fraction of the impedance of the rock behind the face",
-                .otherwise = 1}};
+  static constexpr std::array<Parameter, 0> parameters{};
   static constexpr std::array<StateVariable, 0> state{};
   static const char* contradiction(const Real*) { return nullptr; }
-  static Impedance impedance(const Real* parameter, const Impedance& rock) {
-    return {parameter[0] * rock.normal, parameter[0] * rock.shear};
-  }
+  static Impedance impedance(const Real*, const Impedance& rock) { return rock; }
 
   CDEM_HD static Quiet read(const auto&) { return {}; }
   CDEM_HD Vec3<T> respond(const SurfacePoint<T>&, T*) const {

@@ -96,8 +96,11 @@ def shaken():
         {"surface": {"group": "fill", "normal": [0, 0, 1]}, "pressure": "5 kPa"},
         {"surface": {"group": "block", "normal": [1, 0, 0]}, "pressure": "9 kPa", "stage": "go"}
         | wait,
-        {"surface": {"group": "block", "normal": [0, 1, 0]}, "law": "quiet", "stage": "back"},
     ]
+    case["boundaries"] = [
+        {"name": "side", "surface": {"group": "block", "normal": [0, 1, 0]}, "quiet": True,
+         "stage": "back"},
+    ]  # fmt: skip
     return case
 
 
@@ -218,7 +221,38 @@ def yielding():
     return case
 
 
-SCENES = {f.__name__: f for f in (dam, shaken, bolted, tunnel, blown, lining, soft, yielding)}
+def quake():
+    """Ground at rest that is shaken between quiet sides and a free field, held, and shaken again."""
+
+    def face(*normal):
+        return {"surface": {"group": "block", "normal": list(normal)}}
+
+    case = on_ground(
+        [box("block", [4, 4, 2], divisions=[4, 2, 2]),
+         box("block", [4, 4, 2], [0, 0, 2], divisions=[4, 2, 2])],
+        [static("rest"), dynamic("shake", 0.03), static("stand", 40), dynamic("again", 0.02)],
+        records={"r": {"samples": [0, 1, 3, 1, -2, -4, -1, 1, 3, 1, 0, -1, 0], "step": 0.003,
+                       "unit": "m/s", "scale": 0.02}},
+    )  # fmt: skip
+    del case["groups"]["ground"], case["interfaces"]["pairs"]
+    case["loads"]["supports"] = [
+        face(0, 0, -1) | {"fix": ["x", "y", "z"]},
+        *(face(s, 0, 0) | {"fix": ["x"]} for s in (-1, 1)),
+        *(face(0, s, 0) | {"fix": ["y"]} for s in (-1, 1)),
+    ]
+    given = {"record": "r", "direction": [2, 0, 1]}
+    case["boundaries"] = [
+        face(0, 0, -1) | {"name": "base", "quiet": True, "stage": "shake", "input": given},
+        face(-1, 0, 0) | {"name": "west", "free_field": {"base": "base"}, "stage": "shake"},
+        face(1, 0, 0) | {"name": "east", "quiet": True, "stage": "shake"},
+        face(0, 1, 0) | {"name": "north", "quiet": True, "stage": "again"},
+    ]
+    return case
+
+
+SCENES = {
+    f.__name__: f for f in (dam, shaken, bolted, tunnel, blown, lining, soft, yielding, quake)
+}
 SLOW = ("dam", "tunnel", "lining", "soft", "yielding")
 """What "dam" has is in "shaken" too: a reservoir, water in a joint and a load that rise in stages."""
 

@@ -56,7 +56,7 @@ def check_model(
             f"with "
             "output.maps of the run"
         )
-    own = {"simulation.reference", "simulation.watched", "simulation.born"}  # see RunState.kept
+    own = set(run.kept) | {"simulation.watched", "simulation.born"}
     own |= {name for name in arrays if name.startswith(PREFIX)}
     other = set(arrays) - own | set(attributes.core)
     other ^= set(run.core.fields()) | set(run.core.scalars())
