@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 from cdem.case.curve_times import timed
 from cdem.case.schema import CaseParts
@@ -39,18 +39,27 @@ def record_contradictions(case: CaseParts) -> Iterator[Problem]:
             yield ("records", name, "band"), why
     for keys, name, stage in record_users(case):
         if name not in case.records:
-            close = difflib.get_close_matches(name, case.records, n=1)
-            has = f"the case has: {', '.join(case.records) or 'none'}"
-            hint = f"did you mean {close[0]}?" if close else has
-            yield (*keys, "record"), f"no record '{name}'; {hint}"
-        first = next((s for s in case.stages if s.name == (stage or s.name)), None)
-        if first is not None and first.mode == "static":
-            shaken = [s.name for s in case.stages if s.mode == "dynamic"]
-            yield (
-                (*keys, "record" if stage is None else "stage"),
-                f"would start in the static stage {first.name}, whose time means nothing; write "
-                f"stage: {' or '.join(shaken) or 'NAME, of a dynamic stage'}",
-            )
+            yield (*keys, "record"), _unknown(name, case.records)
+        if why := _static(case, stage):
+            yield (*keys, "record" if stage is None else "stage"), why
+
+
+def _unknown(name: str, known: Iterable[str]) -> str:
+    close = difflib.get_close_matches(name, known, n=1)
+    has = f"the case has: {', '.join(known) or 'none'}"
+    return f"no record '{name}'; {f'did you mean {close[0]}?' if close else has}"
+
+
+def _static(case: CaseParts, stage: str | None) -> str:
+    """Why a record cannot start in its stage, or nothing; an unknown stage is told elsewhere."""
+    first = next((one for one in case.stages if stage in (None, one.name)), None)
+    if first is None or first.mode == "dynamic":
+        return ""
+    shaken = [one.name for one in case.stages if one.mode == "dynamic"]
+    return (
+        f"would start in the static stage {first.name}, whose time means nothing; write stage: "
+        f"{' or '.join(shaken) or 'NAME, of a dynamic stage'}"
+    )
 
 
 def _band(record: Record) -> str:

@@ -22,7 +22,7 @@ TEXT = (".csv", ".txt")
 
 
 def with_records(data: dict[str, Any], source: Source) -> dict[str, Any]:
-    """Replace files of records by their samples.
+    """Add to records the samples of their files.
 
     Args:
         data: Plain data of a case; stays unchanged.
@@ -38,11 +38,11 @@ def with_records(data: dict[str, Any], source: Source) -> dict[str, Any]:
 
 
 def _read(name: str, record: Any, source: Source) -> Any:
-    """A record with samples in place of its file."""
+    """A record with the samples of its file."""
     if not isinstance(record, dict) or not isinstance(record.get("file"), str):
         return record
     if record.get("samples") is not None:
-        return record  # the schema refuses both
+        return record  # the file has been read
     with source.blame(f"records.{name}.file"):
         series = read_series(source.folder / record["file"])
         told = {"unit": series.unit, "step": series.step}
@@ -50,9 +50,8 @@ def _read(name: str, record: Any, source: Source) -> Any:
             given = record.get(key)
             if value is not None and given is not None and not _same(given, value):
                 raise CaseError(f"the file has the {key} {value}, the case {given}; remove {key}")
-    rest = {key: value for key, value in record.items() if key != "file"}
     return (
-        rest
+        record
         | {key: value for key, value in told.items() if value is not None}
         | {"samples": " ".join(map(repr, series.samples.tolist()))}
     )
