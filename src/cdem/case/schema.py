@@ -329,10 +329,16 @@ class HistoryPoint(Part):
     bolt: Name | None = Field(None, description="Follow a bolt, or the largest value of a pattern")
     quantities: list[
         Literal[
-            "centroid", "displacement", "velocity", "energy", "force", "water_force", "surface_force",
-            "axial_force", "slip", "plate_force",
+            "centroid", "displacement", "velocity", "acceleration", "energy", "force", "water_force",
+            "surface_force", "axial_force", "slip", "plate_force",
         ]
     ] = Field(min_length=1, description="Quantities; the last three are for bolts")  # fmt: skip
+    every: Annotated[float, Quantity("s", above=0)] | None = Field(
+        None,
+        description="Most time between its rows in a dynamic stage; all histories are one table, "
+        "whose rows come at the shortest of these times. By default the time between samples of a "
+        "record that acts, and at most a tenth of the time between frames [s]",
+    )
 
     @model_validator(mode="after")
     def _one_place(self) -> HistoryPoint:

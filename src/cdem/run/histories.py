@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -10,14 +11,14 @@ from numpy.typing import NDArray
 
 from cdem.errors import CaseError
 from cdem.rows import rows_of
-from cdem.run.state import RunState
+from cdem.run.state import RowBefore, RunState
 
 
 def tracks(sim: RunState) -> list[tuple[str, Any]]:
     """Column name and value of every quantity in the case's histories."""
     units = {
-        "centroid": "m", "displacement": "m", "velocity": "m/s", "force": "N", "water_force": "N",
-        "surface_force": "N",
+        "centroid": "m", "displacement": "m", "velocity": "m/s", "acceleration": "m/s2",
+        "force": "N", "water_force": "N", "surface_force": "N",
     }  # fmt: skip
     out: list[tuple[str, Any]] = []
     position = sim.build.start_position
@@ -35,10 +36,30 @@ def tracks(sim: RunState) -> list[tuple[str, Any]]:
                 name = f"{entry.name}.kinetic_energy [J]"
                 out.append((name, lambda n=nodes: _kinetic(sim, n)))
                 continue
+            of_time = partial(_value, sim, quantity, nodes)
+            if quantity == "acceleration":
+                of_time = partial(_acceleration, sim, entry.name, nodes)
             for axis in range(3):
                 name = f"{entry.name}.{quantity}_{'xyz'[axis]} [{units[quantity]}]"
-                out.append((name, lambda q=quantity, n=nodes, a=axis: _value(sim, q, n)[a]))
+                out.append((name, lambda values=of_time, a=axis: values()[a]))
     return out
+
+
+def _acceleration(sim: RunState, name: str, nodes: NDArray[np.intp]) -> NDArray[np.float64]:
+    """Mean acceleration of some nodes since the row before [m/s2]; of the same step, the same.
+
+    Velocities are those of the middle of a step, so the change between two rows is that of the
+    mean acceleration between the middles of their last steps.
+    """
+    time, velocity = sim.time, _value(sim, "velocity", nodes)
+    then = sim.rows_before.get(name)
+    if then is not None and then.time >= time:
+        return np.array(then.acceleration)
+    acceleration = np.zeros(3)
+    if then is not None:
+        acceleration = (velocity - then.velocity) / (time - then.time)
+    sim.rows_before[name] = RowBefore(time, velocity.tolist(), acceleration.tolist())
+    return acceleration
 
 
 def _of_bolts(
