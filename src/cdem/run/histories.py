@@ -13,6 +13,9 @@ from cdem.errors import CaseError
 from cdem.rows import rows_of
 from cdem.run.state import RowBefore, RunState
 
+FORCES = {"force": "node.reaction", "water_force": "node.water", "surface_force": "node.surface"}
+"""Arrays of the core with forces on nodes; force is that of supports, as at a loading plate."""
+
 
 def tracks(sim: RunState) -> list[tuple[str, Any]]:
     """Column name and value of every quantity in the case's histories."""
@@ -91,16 +94,15 @@ def _of_bolts(
 
 
 def _value(sim: RunState, quantity: str, nodes: NDArray[np.intp]) -> NDArray[np.float64]:
-    fields = sim.fields
-    if quantity == "force":  # force of supports, as measured at a loading plate
-        return fields["reaction"][nodes].sum(axis=0)
-    if quantity == "water_force":
-        return rows_of(sim.core, "node.water").force[nodes].sum(axis=0)
-    if quantity == "surface_force":
-        return rows_of(sim.core, "node.surface").force[nodes].sum(axis=0)
-    name = "position" if quantity == "centroid" else quantity
-    mass = fields["mass"][nodes]
-    return (mass[:, None] * fields[name][nodes]).sum(axis=0) / mass.sum()
+    """A quantity of some nodes; read for these nodes alone, as histories may have many rows."""
+    if quantity in FORCES:
+        return rows_of(sim.core, FORCES[quantity]).force[nodes].sum(axis=0)
+    motion = rows_of(sim.core, "node.motion")
+    values = motion.velocity[nodes] if quantity == "velocity" else motion.position[nodes]
+    if quantity == "displacement":
+        values = values - sim.reference[nodes]
+    mass = sim.core.array("node.mass")[0][nodes]
+    return (mass[:, None] * values).sum(axis=0) / mass.sum()
 
 
 def _kinetic(sim: RunState, nodes: NDArray[np.intp]) -> float:
