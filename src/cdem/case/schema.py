@@ -13,7 +13,7 @@ from cdem.case.interface_schema import Interfaces
 from cdem.case.laws import BLOCK_LAWS, choice, models
 from cdem.case.loads_schema import Axes, Loads
 from cdem.case.map_system import MapSystem
-from cdem.case.output_fields import CHOICE
+from cdem.case.output_fields import CHOICE, USUAL
 from cdem.case.softening import Softening
 from cdem.case.stress_schema import InitialStress
 from cdem.case.surface_schema import SurfaceLoad
@@ -306,7 +306,7 @@ class Output(Part):
         None, description="Time between frames [s]; by default a fiftieth of each dynamic stage"
     )
     fields: list[FieldName] = Field(
-        CHOICE,
+        USUAL,
         description="Fields of a frame; state variables of a law need the law in the case",
     )
     checkpoint_every: Annotated[float, Quantity("s", above=0)] = Field(

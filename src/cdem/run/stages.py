@@ -118,6 +118,7 @@ def begin(sim: RunState) -> StageState:
     apply_settings(sim, index)
     hand_over(sim.core, sim.build.curves, sim.begins)
     refuse_curves_over(sim)
+    keep_peaks(sim, stage)
     if stage.add:
         fill(sim, stage.add)
     if sim.step_count:
@@ -142,6 +143,15 @@ def begin(sim: RunState) -> StageState:
     elif release is not None:
         release_part(sim, begun)
     return begun
+
+
+def keep_peaks(sim: RunState, stage: Stage) -> None:
+    """Start to keep the largest speeds in a dynamic stage, if the case asks for them, or stop."""
+    if "peak_velocity" not in sim.case.output.fields:
+        return
+    if stage.mode == "dynamic":
+        sim.core.begin_peaks()
+    sim.core.keep_peaks(stage.mode == "dynamic")
 
 
 def row_every(case: Case, index: int, frame_every: float) -> float:
@@ -355,6 +365,8 @@ def catch_up(sim: RunState) -> None:
     if (last := sim.stage or sim.ended_stage) and last.handed_over:
         damp_locally(sim)
     hand_over(sim.core, sim.build.curves, sim.begins)
+    if len(sim.core.array("node.peak")[0]) and sim.stage is not None:
+        sim.core.keep_peaks(sim.stage.mode == "dynamic")
     added = {name for stage in sim.case.stages[: sim.begun] for name in stage.add}
     if added:
         sim.core.update_model(renewed(sim, sorted(added)))
