@@ -35,7 +35,7 @@ def record_users(case: CaseParts) -> Iterator[tuple[Keys, str, str | None]]:
 def record_contradictions(case: CaseParts) -> Iterator[Problem]:
     """Bands that do not fit their records, and records that do not fit their places."""
     for name, record in case.records.items():
-        if why := _band(record):
+        if why := record.band_fault:
             yield ("records", name, "band"), why
     for keys, name, stage in record_users(case):
         if name not in case.records:
@@ -62,33 +62,12 @@ def _static(case: CaseParts, stage: str | None) -> str:
     )
 
 
-def _band(record: Record) -> str:
-    """Why the band of a record does not fit it, or nothing."""
-    if record.band is None:
-        return ""
-    assert record.step is not None
-    (low, high), nyquist, duration = record.band, 0.5 / record.step, record.duration
-    if low >= high:
-        return f"the low frequency must be below the high one, got {low:g} and {high:g} Hz"
-    if high > nyquist:
-        return (
-            f"{high:g} Hz is above {nyquist:g} Hz, the highest frequency in samples every "
-            f"{record.step:g} s; write at most that"
-        )
-    if low < 1 / duration:
-        return (
-            f"{low:g} Hz is below {1 / duration:.3g} Hz, one period in the {duration:g} s of the "
-            "record; write at least that"
-        )
-    return ""
-
-
 def record_doubts(case: CaseParts) -> tuple[list[Problem], list[Problem]]:
     """Impossible and unusual records: path and message."""
     impossible: list[Problem] = []
     unusual: list[Problem] = []
     for name, record in case.records.items():
-        if _band(record):
+        if record.band_fault:
             continue  # cannot be filtered
         keys: Keys = ("records", name)
         found = measures(case.processed(name))
@@ -98,7 +77,7 @@ def record_doubts(case: CaseParts) -> tuple[list[Problem], list[Problem]]:
             unusual.append((keys, f"{why}, which is rare; are its unit and scale right?"))
         unusual += [(keys, why) for why in _left(record, found)]
     for keys, name, stage in record_users(case):
-        if name in case.records and not _band(case.records[name]):
+        if name in case.records and not case.records[name].band_fault:
             unusual += [(keys, why) for why in _cut(case, case.processed(name), stage)]
     return impossible, unusual
 

@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+from pydantic import ValidationError
 
+from cdem.case.explain import explain
 from cdem.case.input_file import read_text, reading
+from cdem.case.reader import read_settings
 from cdem.case.source import Source
+from cdem.case.waves_schema import Record
 from cdem.errors import CaseError
 from cdem.seismic.files import Series, of_array, read_at2, read_columns
 from cdem.units import to_number
@@ -82,3 +87,21 @@ def read_series(path: Path) -> Series:
         text = read_text(path, "record")
         read = read_at2 if ending in PEER else read_columns
         return read(text, str(path))
+
+
+def load_record(path: Path, settings: Iterable[str]) -> Record:
+    """A record of a file, with keys as texts such as ``"unit=g"``.
+
+    Raises:
+        CaseError: The file cannot be read, or a key is wrong or missing.
+    """
+    source = Source(file=str(path))
+    given = {"file": path.name} | read_settings(settings)
+    data = with_records({"records": {path.stem: given}}, source)["records"][path.stem]
+    try:
+        record = Record(**data)
+    except ValidationError as error:
+        raise explain(error, source, Record) from None
+    if record.band_fault:
+        raise source.error([(("band",), record.band_fault)])
+    return record

@@ -92,6 +92,27 @@ class Record(Part):
         assert self.samples is not None and self.step is not None
         return self.samples.count(" ") * self.step
 
+    @property
+    def band_fault(self) -> str:
+        """Why the band does not fit the samples, or nothing."""
+        if self.band is None:
+            return ""
+        assert self.step is not None
+        (low, high), nyquist = self.band, 0.5 / self.step
+        if low >= high:
+            return f"the low frequency must be below the high one, got {low:g} and {high:g} Hz"
+        if high > nyquist:
+            return (
+                f"{high:g} Hz is above {nyquist:g} Hz, the highest frequency in samples every "
+                f"{self.step:g} s; write at most that"
+            )
+        if low < 1 / self.duration:
+            return (
+                f"{low:g} Hz is below {1 / self.duration:.3g} Hz, one period in the "
+                f"{self.duration:g} s of the record; write at least that"
+            )
+        return ""
+
     def steps(self) -> tuple[tuple[str, Processed], ...]:
         """The steps of its processing, each with its name and its result; the last is used."""
         assert self.samples is not None and self.unit is not None and self.step is not None
