@@ -25,6 +25,7 @@
 #include "core/nodes/curves.hpp"
 #include "core/nodes/ground.hpp"
 #include "core/nodes/masses.hpp"
+#include "core/nodes/nodes.hpp"
 #include "core/nodes/time_step.hpp"
 #include "core/rest/rest.hpp"
 #include "core/run/bring_in.hpp"
@@ -322,6 +323,9 @@ void bind_run(nb::class_<Core>& core) {
           "release_forces",
           [](Core& c, Real part, Real end) { release_forces(c.state, part, end); }, "part"_a,
           "end_time"_a)
+      .def("begin_peaks", [](Core& c) { begin_peaks(c.model, c.state); })
+      .def(
+          "keep_peaks", [](Core& c, bool keep) { c.state.nodes.keeps_peaks = keep; }, "keep"_a)
       .def("leave_adaptive",
            [](Core& c) {  // the next step stops all motion, if it is one of kinetic relaxation
              close_ledger(c.model, c.state);

@@ -4,6 +4,7 @@
 #include "core/nodes/contact_corners.hpp"
 #include "core/nodes/node_energy.hpp"
 #include "core/nodes/node_frequency.hpp"
+#include "core/nodes/peak_speed.hpp"
 #include "core/nodes/relaxing_node.hpp"
 #include "core/nodes/sum_applied.hpp"
 
@@ -16,6 +17,7 @@ template void for_each_item(Queue, Index, Blocks, const AdvanceNodes<NoDashpots>
 template void for_each_item(Queue, Index, Blocks, const AdvanceNodes<Dashpots>&);
 template void for_each_item(Queue, Index, const SampleDashpots&);
 template void for_each_item(Queue, Index, const NodeMomentum&);
+template void for_each_item(Queue, Index, const KeepPeak&);
 template Most most(Queue, Index, const NodeFrequency&);
 template void list_rows(Queue, Index, Index, Index, const ContactCorners&, Column<Index>&,
                         Column<Index>&);

@@ -31,6 +31,12 @@ void describe_motion(NodeState& n, Stored&& stored) {
           .meaning = "energy that changes of the step hide",
           .rows = "nodes"},
          n.step_change);
+  stored({.name = "node.peak",
+          .unit = "m2/s2",
+          .meaning = "largest squared speed since the last dynamic stage began",
+          .rows = "nodes",
+          .optional = true},
+         n.peak);
   stored({.name = "node.reaction",
           .unit = "N, -",
           .meaning = "force of its support, and a pad",

@@ -17,6 +17,8 @@ struct NodeState {
   Column<Real> force, reaction, sample;  // rows of 4
   Column<Real> damping_force;            // rows of 4, empty until something damps
   Column<Real> unbalance;
+  Column<Real> peak;         // largest squared speed, see KeepPeak; empty: nothing asks for it
+  bool keeps_peaks = false;  // in this stage
   Column<Real> relax;       // adaptive relaxation only, rows of 8: force, velocity of the last step
   Column<Real> relax_mass;  // and only then not empty: masses that move, scaled  [kg]
   Column<Index> bonded_node, body;  // labels, see bonds/bonded_surface.hpp

@@ -12,6 +12,7 @@
 #include "core/nodes/fused_block.hpp"
 #include "core/nodes/masses.hpp"
 #include "core/nodes/node_energy.hpp"
+#include "core/nodes/peak_speed.hpp"
 #include "core/nodes/sleep.hpp"
 #include "core/nodes/views.hpp"
 
@@ -174,7 +175,14 @@ void advance_nodes(const Model& m, State& s, Queue q, const StepPlan& plan) {
     sum_then_move(m, s, q, plan);
   else
     sum_and_move(m, s, q, plan);
+  if (s.nodes.keeps_peaks)
+    for_each_item(q, m.node_count, KeepPeak{{s.nodes.motion.data()}, s.nodes.peak.data()});
   if (plan.everything_awake) find_awake(m, s);
+}
+
+void begin_peaks(const Model& m, State& s) {
+  s.nodes.peak.resize(0);
+  s.nodes.peak.resize(std::size_t(m.node_count));
 }
 
 bool damps_nodes(const Model& m, const State& s) {

@@ -17,6 +17,9 @@ void advance_nodes(const Model& model, State& state, Queue queue, const StepPlan
 /// Sum the forces on every node, and move none.
 void sum_forces(const Model& model, State& state, Queue queue, const StepPlan& plan);
 
+/// Set the largest speeds of all nodes to 0.
+void begin_peaks(const Model& model, State& state);
+
 /// Does damping act on the nodes?
 bool damps_nodes(const Model& model, const State& state);
 

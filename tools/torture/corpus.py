@@ -8,6 +8,7 @@ from __future__ import annotations
 import contextlib
 import io
 import json
+import math
 import shutil
 import sys
 from pathlib import Path
@@ -82,6 +83,21 @@ def write_files(folder: Path) -> None:
     _write_terrain(folder)
     (folder / "history-a.csv").write_text("# blast\ntime [ms]; factor [%]\n0; 0\n0.5; 100\n2; 30\n")
     (folder / "history-b.txt").write_text("0 0\n0.5\t1e0\n2 -.3\n")
+    _write_records(folder)
+
+
+def _write_records(folder: Path) -> None:
+    import numpy as np
+
+    samples = [round(math.sin(0.7 * i) * i * 1e-3, 7) for i in range(40)]
+    rows = "\n".join(" ".join(f"{a: .7E}" for a in samples[i : i + 5]) for i in range(0, 40, 5))
+    head = "PEER NGA STRONG MOTION\nSite, 90\nACCELERATION TIME SERIES IN UNITS OF G\n"
+    (folder / "record-a.at2").write_text(f"{head}NPTS=   40, DT=   .0050 SEC,\n{rows}\n")
+    (folder / "record-b.at2").write_text(f"{head}   40   0.0050   NPTS, DT\n{rows}\n")
+    timed = "".join(f"{0.01 * i:.2f}; {a}\n" for i, a in enumerate(samples))
+    (folder / "record-c.csv").write_text(f"# site\ntime [s]; velocity [cm/s]\n{timed}")
+    (folder / "record-d.txt").write_text("\n".join(map(str, samples)))
+    np.save(folder / "record-e.npy", np.array(samples))
 
 
 def _write_meshes(folder: Path) -> None:

@@ -150,11 +150,13 @@ def _few_planes(case: Any, boxes: list[Any]) -> bool:
 
 
 def read_file(path: Path) -> None:
-    """Read a mesh, bodies, contours, a grid, a history, an outline, and do what follows first."""
+    """Read a mesh, bodies, contours, a grid, a history, a record, an outline, and do what follows first."""
     import numpy as np
 
     from cdem.case.history_file import with_histories
+    from cdem.case.record_file import read_series
     from cdem.case.source import Source
+    from cdem.case.waves_schema import Record
     from cdem.mesh.blocks import build_topology
     from cdem.mesh.mesh_files import read_mesh
     from cdem.model.body_files import read_bodies
@@ -175,6 +177,11 @@ def read_file(path: Path) -> None:
         read_grid(path)
     elif kind == "history":
         with_histories({"history": {"file": path.name}}, Source(file=str(path)))
+    elif kind == "record":
+        series = read_series(path)
+        Record(
+            samples=series.samples.tolist(), unit=series.unit or "g", step=series.step or 0.01
+        ).steps()
     elif kind == "cloud":
         box = np.zeros(2), np.full(2, 9.0)
         read_cloud(path, Projection(None), None, box, 1.0, "ground")

@@ -29,8 +29,7 @@ def files_of(data: dict[str, Any]) -> Places:
         places += [(one, "file") for one in [*_mappings(model.get("blocks")), *_mappings(discs)]]
     if isinstance(water, dict):
         places += [(one, key) for one in _mappings(water.get("fields")) for key in OF_WATER]
-    places += [(one, "file") for one in _mappings(_values(data.get("records")))]
-    places += _histories(data)
+    places += [*_records(data.get("records")), *_histories(data)]
     for changes in _mappings([stage.get("set") for stage in _mappings(data.get("stages"))]):
         places += [(changes, path) for path in changes if SET_OF_WATER.fullmatch(str(path))]
     return [(holder, key) for holder, key in places if _names_one(holder, key)]
@@ -54,9 +53,10 @@ def _names_one(holder: Any, key: str | int) -> bool:
     return isinstance(value, str)
 
 
-def _values(value: Any) -> list[Any]:
-    """The values of a mapping; none for any other value."""
-    return list(value.values()) if isinstance(value, dict) else []
+def _records(value: Any) -> Places:
+    """Records that name a file."""
+    records = list(value.values()) if isinstance(value, dict) else []
+    return [(one, "file") for one in _mappings(records)]
 
 
 def _mappings(value: Any) -> list[dict[str, Any]]:

@@ -53,6 +53,10 @@ OUTPUT_FIELDS = [
         frames="chosen", surface="chosen", colors="amount",
     ),
     OutputField(
+        "peak_velocity", "Largest speed since the last dynamic stage began; only if asked for",
+        "m/s", "nodes", frames="chosen", surface="chosen", colors="amount",
+    ),
+    OutputField(
         "stress", "Mean stress, tension positive: xx yy zz xy yz zx", "Pa", "elements",
         frames="chosen", surface="never", colors=None,
     ),
@@ -137,4 +141,8 @@ OF_WATER = ("effective_stress", "pore_pressure")
 CARRIED = [f for f in OUTPUT_FIELDS if f.surface != "never" and f.on != "faces"]
 """Fields of nodes and elements that the surface file copies to its points and faces."""
 CHOICE = [f.name for f in OUTPUT_FIELDS if f.frames == "chosen"]
-"""Fields that a case may choose; default all."""
+"""Fields that a case may choose."""
+ASKED = ("peak_velocity",)
+"""Fields that cost time in every step, and so are not in the default."""
+USUAL = [name for name in CHOICE if name not in ASKED]
+"""The default."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 from cdem.case.curve_times import timed
 from cdem.case.schema import CaseParts
@@ -35,43 +35,31 @@ def record_users(case: CaseParts) -> Iterator[tuple[Keys, str, str | None]]:
 def record_contradictions(case: CaseParts) -> Iterator[Problem]:
     """Bands that do not fit their records, and records that do not fit their places."""
     for name, record in case.records.items():
-        if why := _band(record):
+        if why := record.band_fault:
             yield ("records", name, "band"), why
     for keys, name, stage in record_users(case):
         if name not in case.records:
-            close = difflib.get_close_matches(name, case.records, n=1)
-            has = f"the case has: {', '.join(case.records) or 'none'}"
-            hint = f"did you mean {close[0]}?" if close else has
-            yield (*keys, "record"), f"no record '{name}'; {hint}"
-        first = next((s for s in case.stages if s.name == (stage or s.name)), None)
-        if first is not None and first.mode == "static":
-            shaken = [s.name for s in case.stages if s.mode == "dynamic"]
-            yield (
-                (*keys, "record" if stage is None else "stage"),
-                f"would start in the static stage {first.name}, whose time means nothing; write "
-                f"stage: {' or '.join(shaken) or 'NAME, of a dynamic stage'}",
-            )
+            yield (*keys, "record"), _unknown(name, case.records)
+        if why := _static(case, stage):
+            yield (*keys, "record" if stage is None else "stage"), why
 
 
-def _band(record: Record) -> str:
-    """Why the band of a record does not fit it, or nothing."""
-    if record.band is None:
+def _unknown(name: str, known: Iterable[str]) -> str:
+    close = difflib.get_close_matches(name, known, n=1)
+    has = f"the case has: {', '.join(known) or 'none'}"
+    return f"no record '{name}'; {f'did you mean {close[0]}?' if close else has}"
+
+
+def _static(case: CaseParts, stage: str | None) -> str:
+    """Why a record cannot start in its stage, or nothing; an unknown stage is told elsewhere."""
+    first = next((one for one in case.stages if stage in (None, one.name)), None)
+    if first is None or first.mode == "dynamic":
         return ""
-    assert record.step is not None
-    (low, high), nyquist, duration = record.band, 0.5 / record.step, record.duration
-    if low >= high:
-        return f"the low frequency must be below the high one, got {low:g} and {high:g} Hz"
-    if high > nyquist:
-        return (
-            f"{high:g} Hz is above {nyquist:g} Hz, the highest frequency in samples every "
-            f"{record.step:g} s; write at most that"
-        )
-    if low < 1 / duration:
-        return (
-            f"{low:g} Hz is below {1 / duration:.3g} Hz, one period in the {duration:g} s of the "
-            "record; write at least that"
-        )
-    return ""
+    shaken = [one.name for one in case.stages if one.mode == "dynamic"]
+    return (
+        f"would start in the static stage {first.name}, whose time means nothing; write stage: "
+        f"{' or '.join(shaken) or 'NAME, of a dynamic stage'}"
+    )
 
 
 def record_doubts(case: CaseParts) -> tuple[list[Problem], list[Problem]]:
@@ -79,7 +67,7 @@ def record_doubts(case: CaseParts) -> tuple[list[Problem], list[Problem]]:
     impossible: list[Problem] = []
     unusual: list[Problem] = []
     for name, record in case.records.items():
-        if _band(record):
+        if record.band_fault:
             continue  # cannot be filtered
         keys: Keys = ("records", name)
         found = measures(case.processed(name))
@@ -89,7 +77,7 @@ def record_doubts(case: CaseParts) -> tuple[list[Problem], list[Problem]]:
             unusual.append((keys, f"{why}, which is rare; are its unit and scale right?"))
         unusual += [(keys, why) for why in _left(record, found)]
     for keys, name, stage in record_users(case):
-        if name in case.records and not _band(case.records[name]):
+        if name in case.records and not case.records[name].band_fault:
             unusual += [(keys, why) for why in _cut(case, case.processed(name), stage)]
     return impossible, unusual
 

@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+from pydantic import ValidationError
 
+from cdem.case.explain import explain
 from cdem.case.input_file import read_text, reading
+from cdem.case.reader import read_settings
 from cdem.case.source import Source
+from cdem.case.waves_schema import Record
 from cdem.errors import CaseError
 from cdem.seismic.files import Series, of_array, read_at2, read_columns
 from cdem.units import to_number
@@ -22,7 +27,7 @@ TEXT = (".csv", ".txt")
 
 
 def with_records(data: dict[str, Any], source: Source) -> dict[str, Any]:
-    """Replace files of records by their samples.
+    """Add to records the samples of their files.
 
     Args:
         data: Plain data of a case; stays unchanged.
@@ -38,11 +43,11 @@ def with_records(data: dict[str, Any], source: Source) -> dict[str, Any]:
 
 
 def _read(name: str, record: Any, source: Source) -> Any:
-    """A record with samples in place of its file."""
+    """A record with the samples of its file."""
     if not isinstance(record, dict) or not isinstance(record.get("file"), str):
         return record
     if record.get("samples") is not None:
-        return record  # the schema refuses both
+        return record  # the file has been read
     with source.blame(f"records.{name}.file"):
         series = read_series(source.folder / record["file"])
         told = {"unit": series.unit, "step": series.step}
@@ -50,9 +55,8 @@ def _read(name: str, record: Any, source: Source) -> Any:
             given = record.get(key)
             if value is not None and given is not None and not _same(given, value):
                 raise CaseError(f"the file has the {key} {value}, the case {given}; remove {key}")
-    rest = {key: value for key, value in record.items() if key != "file"}
     return (
-        rest
+        record
         | {key: value for key, value in told.items() if value is not None}
         | {"samples": " ".join(map(repr, series.samples.tolist()))}
     )
@@ -83,3 +87,21 @@ def read_series(path: Path) -> Series:
         text = read_text(path, "record")
         read = read_at2 if ending in PEER else read_columns
         return read(text, str(path))
+
+
+def load_record(path: Path, settings: Iterable[str]) -> Record:
+    """A record of a file, with keys as texts such as ``"unit=g"``.
+
+    Raises:
+        CaseError: The file cannot be read, or a key is wrong or missing.
+    """
+    source = Source(file=str(path))
+    given = {"file": path.name} | read_settings(settings)
+    data = with_records({"records": {path.stem: given}}, source)["records"][path.stem]
+    try:
+        record = Record(**data)
+    except ValidationError as error:
+        raise explain(error, source, Record) from None
+    if record.band_fault:
+        raise source.error([(("band",), record.band_fault)])
+    return record

@@ -14,7 +14,7 @@ from cdem.case.interface_schema import Interfaces
 from cdem.case.laws import BLOCK_LAWS, choice, models
 from cdem.case.loads_schema import Axes, Loads
 from cdem.case.map_system import MapSystem
-from cdem.case.output_fields import CHOICE
+from cdem.case.output_fields import CHOICE, USUAL
 from cdem.case.softening import Softening
 from cdem.case.stress_schema import InitialStress
 from cdem.case.surface_schema import SurfaceLoad
@@ -307,7 +307,7 @@ class Output(Part):
         None, description="Time between frames [s]; by default a fiftieth of each dynamic stage"
     )
     fields: list[FieldName] = Field(
-        CHOICE,
+        USUAL,
         description="Fields of a frame; state variables of a law need the law in the case",
     )
     checkpoint_every: Annotated[float, Quantity("s", above=0)] = Field(
@@ -330,10 +330,16 @@ class HistoryPoint(Part):
     bolt: Name | None = Field(None, description="Follow a bolt, or the largest value of a pattern")
     quantities: list[
         Literal[
-            "centroid", "displacement", "velocity", "energy", "force", "water_force", "surface_force",
-            "axial_force", "slip", "plate_force",
+            "centroid", "displacement", "velocity", "acceleration", "energy", "force", "water_force",
+            "surface_force", "axial_force", "slip", "plate_force",
         ]
     ] = Field(min_length=1, description="Quantities; the last three are for bolts")  # fmt: skip
+    every: Annotated[float, Quantity("s", above=0)] | None = Field(
+        None,
+        description="Most time between its rows in a dynamic stage; all histories are one table, "
+        "whose rows come at the shortest of these times. By default the time between samples of a "
+        "record that acts, and at most a tenth of the time between frames [s]",
+    )
 
     @model_validator(mode="after")
     def _one_place(self) -> HistoryPoint:

@@ -7,7 +7,6 @@ from typing import Annotated, Literal
 import numpy as np
 from pydantic import BeforeValidator, Field, model_validator
 
-from cdem.case.bodies_schema import exactly_one
 from cdem.case.types import Line, Part, Quantity
 from cdem.errors import CaseError
 from cdem.seismic.files import Series, checked
@@ -44,7 +43,7 @@ class Record(Part):
     )
     samples: Samples | None = Field(
         None,
-        description="Samples in `unit`, in place of a file; those of a file become part of the case",
+        description="Samples in `unit`: those of the file, which is read only where they are missing",
     )
     kind: Literal["acceleration", "velocity", "displacement"] | None = Field(
         None, description="Quantity of the samples; by default that of the unit"
@@ -66,7 +65,8 @@ class Record(Part):
 
     @model_validator(mode="after")
     def _complete(self) -> Record:
-        exactly_one(self, ("file", "samples"))
+        if self.samples is None:
+            raise ValueError("give a file, e.g. file: kobe.at2, or samples")
         if self.unit is None:
             raise ValueError(f"the unit is missing, in file and case: {', '.join(UNITS)}")
         quantity = UNITS[self.unit][0]
@@ -91,6 +91,27 @@ class Record(Part):
         """Time of the last sample [s]."""
         assert self.samples is not None and self.step is not None
         return self.samples.count(" ") * self.step
+
+    @property
+    def band_fault(self) -> str:
+        """Why the band does not fit the samples, or nothing."""
+        if self.band is None:
+            return ""
+        assert self.step is not None
+        (low, high), nyquist = self.band, 0.5 / self.step
+        if low >= high:
+            return f"the low frequency must be below the high one, got {low:g} and {high:g} Hz"
+        if high > nyquist:
+            return (
+                f"{high:g} Hz is above {nyquist:g} Hz, the highest frequency in samples every "
+                f"{self.step:g} s; write at most that"
+            )
+        if low < 1 / self.duration:
+            return (
+                f"{low:g} Hz is below {1 / self.duration:.3g} Hz, one period in the "
+                f"{self.duration:g} s of the record; write at least that"
+            )
+        return ""
 
     def steps(self) -> tuple[tuple[str, Processed], ...]:
         """The steps of its processing, each with its name and its result; the last is used."""

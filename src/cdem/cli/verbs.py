@@ -49,6 +49,14 @@ VERBS = {
         "result",
         "Measure front, reach, H/L, deposit, sections and pieces; write maps and tables.",
     ),
+    "record": (
+        "record",
+        "Show a record of ground motion; layered ground: amplification, motion at depth.",
+    ),
+    "records": (
+        "record",
+        "Measure the motions of a run: peaks, Arias intensity, spectra, Newmark slip, spectral ratios.",
+    ),
     "export": ("result", "Write the frames as files for ParaView and the like."),
     "doctor": ("installation", "Check what works on this machine, and say how to mend the rest."),
     "law": ("law", "List laws, test one of them, or build your own."),

@@ -26,6 +26,8 @@ from cdem.model.options import pairs_loose_joints
 from cdem.model.ruling_step import remedy, ruling_step
 from cdem.model.slips import slips
 from cdem.model.wetted import idle_water, wet_bonds
+from cdem.seismic.measures import measures
+from cdem.seismic.tables import record_lines
 
 SOFT = 30.0
 """Compliance of the interfaces, in the softest direction, above which the audit warns [%]."""
@@ -270,6 +272,7 @@ class Audit:
             **self.modules,
             "initial_stress": self._build.initial.as_dict() if self._build.initial else None,
             "time_step": self.step,
+            "records": {name: self._record(name) for name in self._build.case.records},
             "memory_bytes": self.memory,
             "warnings": self.warnings,
         }
@@ -305,6 +308,7 @@ class Audit:
         lines += self._stiffness_text()
         lines += self._initial_text()
         lines += self._modules_text()
+        lines += self._records_text()
         s = self.step
         lines += [
             "",
@@ -364,6 +368,19 @@ class Audit:
         """Lines of the modules."""
         modules = self._build.modules.items()
         return [line for name, module in modules for line in module.lines(self.modules[name])]
+
+    def _record(self, name: str) -> dict[str, float]:
+        """Measures of a processed record."""
+        return measures(self._build.case.processed(name))._asdict()
+
+    def _records_text(self) -> list[str]:
+        """Lines on the records, as read and as used."""
+        case, lines = self._build.case, [""] * bool(self._build.case.records)
+        for name, record in case.records.items():
+            (first, before), *_ = record.steps()
+            told = record_lines(name, [(first, before), ("processed", case.processed(name))])
+            lines += [f"  {line}" for line in told]
+        return lines
 
     def _stiffness_text(self) -> list[str]:
         """Lines on the compensation for bonds, and on overlaps of contacts."""

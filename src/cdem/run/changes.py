@@ -16,6 +16,7 @@ FILES = (
     "model.joints.*.discs.file",
     "model.mesh",
     "model.blocks.*.file",
+    "records.*.file",
     "water.fields.*.surface",
     "water.fields.*.table",
 )

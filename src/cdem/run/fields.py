@@ -93,6 +93,13 @@ def velocity_of(sim: RunState) -> NDArray[np.float64]:
     return rows_of(sim.core, "node.motion").velocity
 
 
+@output_field("peak_velocity")
+def peak_velocity_of(sim: RunState) -> NDArray[np.float64]:
+    """Largest speed of each node since the last dynamic stage began [m/s]; 0 if not asked for."""
+    squared = sim.core.array("node.peak")[0]
+    return np.sqrt(squared) if len(squared) else np.zeros(len(sim.reference))
+
+
 @output_field("node")
 def node_of(sim: RunState) -> NDArray[np.int32]:
     """Number of each node."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -10,14 +11,17 @@ from numpy.typing import NDArray
 
 from cdem.errors import CaseError
 from cdem.rows import rows_of
-from cdem.run.state import RunState
+from cdem.run.state import RowBefore, RunState
+
+FORCES = {"force": "node.reaction", "water_force": "node.water", "surface_force": "node.surface"}
+"""Arrays of the core with forces on nodes; force is that of supports, as at a loading plate."""
 
 
 def tracks(sim: RunState) -> list[tuple[str, Any]]:
     """Column name and value of every quantity in the case's histories."""
     units = {
-        "centroid": "m", "displacement": "m", "velocity": "m/s", "force": "N", "water_force": "N",
-        "surface_force": "N",
+        "centroid": "m", "displacement": "m", "velocity": "m/s", "acceleration": "m/s2",
+        "force": "N", "water_force": "N", "surface_force": "N",
     }  # fmt: skip
     out: list[tuple[str, Any]] = []
     position = sim.build.start_position
@@ -35,10 +39,30 @@ def tracks(sim: RunState) -> list[tuple[str, Any]]:
                 name = f"{entry.name}.kinetic_energy [J]"
                 out.append((name, lambda n=nodes: _kinetic(sim, n)))
                 continue
+            of_time = partial(_value, sim, quantity, nodes)
+            if quantity == "acceleration":
+                of_time = partial(_acceleration, sim, entry.name, nodes)
             for axis in range(3):
                 name = f"{entry.name}.{quantity}_{'xyz'[axis]} [{units[quantity]}]"
-                out.append((name, lambda q=quantity, n=nodes, a=axis: _value(sim, q, n)[a]))
+                out.append((name, lambda values=of_time, a=axis: values()[a]))
     return out
+
+
+def _acceleration(sim: RunState, name: str, nodes: NDArray[np.intp]) -> NDArray[np.float64]:
+    """Mean acceleration of some nodes since the row before [m/s2]; of the same step, the same.
+
+    Velocities are those of the middle of a step, so the change between two rows is that of the
+    mean acceleration between the middles of their last steps.
+    """
+    time, velocity = sim.time, _value(sim, "velocity", nodes)
+    then = sim.rows_before.get(name)
+    if then is not None and then.time >= time:
+        return np.array(then.acceleration)
+    acceleration = np.zeros(3)
+    if then is not None:
+        acceleration = (velocity - then.velocity) / (time - then.time)
+    sim.rows_before[name] = RowBefore(time, velocity.tolist(), acceleration.tolist())
+    return acceleration
 
 
 def _of_bolts(
@@ -70,16 +94,15 @@ def _of_bolts(
 
 
 def _value(sim: RunState, quantity: str, nodes: NDArray[np.intp]) -> NDArray[np.float64]:
-    fields = sim.fields
-    if quantity == "force":  # force of supports, as measured at a loading plate
-        return fields["reaction"][nodes].sum(axis=0)
-    if quantity == "water_force":
-        return rows_of(sim.core, "node.water").force[nodes].sum(axis=0)
-    if quantity == "surface_force":
-        return rows_of(sim.core, "node.surface").force[nodes].sum(axis=0)
-    name = "position" if quantity == "centroid" else quantity
-    mass = fields["mass"][nodes]
-    return (mass[:, None] * fields[name][nodes]).sum(axis=0) / mass.sum()
+    """A quantity of some nodes; read for these nodes alone, as histories may have many rows."""
+    if quantity in FORCES:
+        return rows_of(sim.core, FORCES[quantity]).force[nodes].sum(axis=0)
+    motion = rows_of(sim.core, "node.motion")
+    values = motion.velocity[nodes] if quantity == "velocity" else motion.position[nodes]
+    if quantity == "displacement":
+        values = values - sim.reference[nodes]
+    mass = sim.core.array("node.mass")[0][nodes]
+    return (mass[:, None] * values).sum(axis=0) / mass.sum()
 
 
 def _kinetic(sim: RunState, nodes: NDArray[np.intp]) -> float:

@@ -170,8 +170,8 @@ def _stages(attributes: Attributes) -> list[StageState]:
 def _wrong_time(attributes: Attributes, stage: StageState) -> str:
     """Impossible values of the present stage, or ""."""
     core, end = attributes.core, stage.end_time
-    times = [stage.start_time, stage.row_every, stage.held, 0.0 if end is None else end]
-    sound = np.isfinite(times).all() and stage.row_every > 0
+    times = [stage.start_time, stage.row_every, stage.frame_every, stage.held, end or 0.0]
+    sound = np.isfinite(times).all() and stage.row_every > 0 and stage.frame_every >= 0
     sound = sound and 0 <= stage.start_step <= core["step"] and stage.start_time <= core["time"]
     sound = sound and 0 <= stage.rows <= MOST_STEPS and 0 <= stage.parts <= MOST_STEPS
     sound = sound and (end is None) == (stage.mode == "static")

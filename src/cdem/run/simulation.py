@@ -507,6 +507,7 @@ class Simulation(RunState):
         self.wall_time, self.departures = attributes.wall_time, attributes.departures
         stages.change_end(self, longer=changes.longer)
         self.settings = attributes.settings
+        self.rows_before = attributes.rows_before
         self.begins = restored.begins(attributes)
         stages.catch_up(self)
         self.core.prepare()

@@ -21,6 +21,8 @@ class StageState:
         start_step: Steps done before it.
         end_time: [s], or None for a static stage.
         row_every: Time between history rows [s].
+        frame_every: Time between frames [s]; 0 in checkpoints of earlier versions, which had ten
+            rows for each.
         rows: Number of history rows whose times have passed, after the first.
         frame_due: Whether a frame was due with the last of them.
         wall_time: Wall time spent in it [s].
@@ -45,6 +47,7 @@ class StageState:
     start_step: int
     end_time: float | None
     row_every: float
+    frame_every: float = 0.0
     rows: int = 0
     frame_due: bool = False
     wall_time: float = 0.0

@@ -7,8 +7,10 @@ from collections.abc import Iterable
 import numpy as np
 from numpy.typing import NDArray
 
+from cdem.case.case import Case
 from cdem.case.curve_times import last_change, last_dynamic, over_early
 from cdem.case.laws import INTERFACE_LAWS
+from cdem.case.record_checks import record_users
 from cdem.case.schema import Release, Stage
 from cdem.errors import CaseError
 from cdem.model.backfill import folded, nodes_of_groups, places
@@ -24,7 +26,9 @@ from cdem.run.state import RunState, Setting
 STATIC_RECORD_STEPS = 200
 """Steps between history rows of a static stage, which has no meaningful time."""
 ROWS_PER_FRAME = 10
-"""History rows per recorded frame of a dynamic stage."""
+"""History rows per recorded frame of a dynamic stage, if nothing asks for more."""
+ROUNDING = 1e-12
+"""Part by which a time may fall short of that of a frame by rounding [1]."""
 RELAXATIONS = {"local": "none", "kinetic": "kinetic", "adaptive": "adaptive", "solve": "adaptive"}
 """What the core does in each step of a static stage, by its `relax`."""
 LOCAL_DAMPING = 0.8
@@ -115,6 +119,7 @@ def begin(sim: RunState) -> StageState:
     apply_settings(sim, index)
     hand_over(sim.core, sim.build.curves, sim.begins)
     refuse_curves_over(sim)
+    keep_peaks(sim, stage)
     if stage.add:
         fill(sim, stage.add)
     if sim.step_count:
@@ -129,7 +134,8 @@ def begin(sim: RunState) -> StageState:
         start_time=sim.time,
         start_step=sim.step_count,
         end_time=end,
-        row_every=every / ROWS_PER_FRAME,
+        row_every=row_every(sim.case, index, every),
+        frame_every=every,
         held=float(sim.core.scalars()["relief_to"]),
     )
     release = _release_of(stage)
@@ -138,6 +144,31 @@ def begin(sim: RunState) -> StageState:
     elif release is not None:
         release_part(sim, begun)
     return begun
+
+
+def keep_peaks(sim: RunState, stage: Stage) -> None:
+    """Start to keep the largest speeds in a dynamic stage, if the case asks for them, or stop."""
+    if "peak_velocity" not in sim.case.output.fields:
+        return
+    if stage.mode == "dynamic":
+        sim.core.begin_peaks()
+    sim.core.keep_peaks(stage.mode == "dynamic")
+
+
+def row_every(case: Case, index: int, frame_every: float) -> float:
+    """Time between rows of the histories in a dynamic stage [s].
+
+    Args:
+        case: The case.
+        index: Number of the stage.
+        frame_every: Time between its frames [s].
+    """
+    asked = [entry.every for entry in case.histories if entry.every is not None]
+    if asked:
+        return min([frame_every, *asked])
+    begun = {None, *(stage.name for stage in case.stages[: index + 1])}
+    steps = [case.processed(name).step for _, name, stage in record_users(case) if stage in begun]
+    return min([frame_every / ROWS_PER_FRAME, *steps])
 
 
 def refuse_curves_over(sim: RunState) -> None:
@@ -358,6 +389,8 @@ def catch_up(sim: RunState) -> None:
         sim.build.boundaries.follow(sim.case, sim.begun)
         sim.core.update_model(change(sim.build))
     hand_over(sim.core, sim.build.curves, sim.begins)
+    if len(sim.core.array("node.peak")[0]) and sim.stage is not None:
+        sim.core.keep_peaks(sim.stage.mode == "dynamic")
     added = {name for stage in sim.case.stages[: sim.begun] for name in stage.add}
     if added:
         sim.core.update_model(renewed(sim, sorted(added)))
@@ -403,8 +436,15 @@ def record_is_due(sim: RunState, stage: StageState, outcome: str) -> bool:
         if stage.mode == "dynamic":  # a step may be longer than the time between rows
             passed = int((sim.time - stage.start_time) / stage.row_every)
             stage.rows = max(stage.rows, passed)
-        stage.frame_due = stage.rows // ROWS_PER_FRAME > before // ROWS_PER_FRAME
+        stage.frame_due = frames_until(stage, stage.rows) > frames_until(stage, before)
     return due
+
+
+def frames_until(stage: StageState, rows: int) -> int:
+    """Frames of a stage whose times have passed with this many rows."""
+    if stage.frame_every in (0, ROWS_PER_FRAME * stage.row_every):
+        return rows // ROWS_PER_FRAME
+    return int(rows * stage.row_every / stage.frame_every * (1 + ROUNDING))
 
 
 def look_for_rest(sim: RunState, stage: StageState) -> None:

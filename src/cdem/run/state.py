@@ -46,6 +46,21 @@ class Setting:
     value: Any
 
 
+@dataclass
+class RowBefore:
+    """Motion of the nodes of a history at its last row.
+
+    Attributes:
+        time: [s].
+        velocity: [m/s].
+        acceleration: [m/s2].
+    """
+
+    time: float
+    velocity: list[float]
+    acceleration: list[float]
+
+
 class Attributes(BaseModel):
     """Data in a checkpoint besides arrays.
 
@@ -58,6 +73,7 @@ class Attributes(BaseModel):
         overlap, stage_index, stage, ended_stage, finished_stages, wall_time,
         departures, settings: As in `RunState`.
         records: SHA-256 of the files of processed records, by name.
+        rows_before: Motion at the last row of histories with accelerations, by name.
         rows: Rows of the histories.
         row_sums: Their checksums, as in `HistoryFile`.
         frames: Frames recorded.
@@ -79,6 +95,7 @@ class Attributes(BaseModel):
     departures: list[Departure]
     settings: list[Setting] = Field(default_factory=list)
     records: dict[str, str] = Field(default_factory=dict)  # older checkpoints lack it
+    rows_before: dict[str, RowBefore] = Field(default_factory=dict)  # and this
     rows: NonNegativeInt
     row_sums: str
     frames: NonNegativeInt
@@ -92,6 +109,7 @@ class Attributes(BaseModel):
             for kept, kind in ((stage, StageState), (quiet, Quiet)):
                 names = {one.name for one in fields(kind)}
                 late = {
+                    "frame_every",
                     "solved",
                     "handed_over",
                     "first_look",
@@ -127,6 +145,7 @@ class RunState:
         settings: Values set by a script during the run.
         begins: Start times of the stages begun, by name [s].
         record_digests: SHA-256 of the files of processed records in the result folder, by name.
+        rows_before: Motion at the last row of histories with accelerations, by name.
         watched: Positions at the first look at the running static stage [m], shape (nodes, 3).
     """
 
@@ -151,6 +170,7 @@ class RunState:
         self.begins: dict[str, float] = {}
         self.watched = self.build.start_position
         self.record_digests: dict[str, str] = {}
+        self.rows_before: dict[str, RowBefore] = {}
         self.inputs: dict[str, str] = {}  # digests of the case and its files, where they are kept
 
     def __repr__(self) -> str:
@@ -400,6 +420,7 @@ class RunState:
             departures=self.departures,
             settings=self.settings,
             records=self.record_digests,
+            rows_before=self.rows_before,
             rows=rows,
             row_sums=row_sums,
             frames=frames,

@@ -21,6 +21,7 @@ FOLDERS = {
     "surface": ["frame-*.vtkhdf"],
     "bolts": ["frame-*.vtkhdf"],
     "records": ["*.csv"],
+    "motions": ["*.csv", "*.png"],  # cdem records
     "maps": ["*.tif", "*.qml", "*.tif.aux.xml"],  # cdem runout, with files that GIS put beside them
 }
 """Folders inside a result folder, and patterns of the names of their files."""

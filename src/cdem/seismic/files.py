@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from cdem.errors import CaseError
 from cdem.seismic.processing import UNITS
+from cdem.units import LARGEST, SMALLEST
 
 LEAST, MOST = 10, 1_000_000
 """Fewest and most samples of a record."""
@@ -80,26 +81,42 @@ def read_columns(text: str, where: str) -> Series:
     ]
     if not lines:
         raise CaseError(f"{where}: has no rows")
-    units: list[str | None] = []
-    first = re.split(r"[,;]", lines[0][1])
-    if not _is_number(_cells(lines[0][1])[0]):
-        units = [m[1].strip() if (m := re.search(r"\[(.*)\]", name)) else None for name in first]
-        lines = lines[1:]
+    has_head = not _is_number(_cells(lines[0][1])[0])
+    units = _units(lines[0][1]) if has_head else []
+    numbers = _table(lines[has_head:], len(units), where)
+    unit = _known_unit(units[-1], where) if units else None
+    if numbers.shape[1] == 1:
+        return checked(Series(numbers[:, 0], None, unit), where)
+    step = even_step(numbers[:, 0] * _time_unit(units[0] if units else None, where), where)
+    return checked(Series(numbers[:, 1].copy(), step, unit), where)
+
+
+def _units(line: str) -> list[str | None]:
+    """Units of the columns in a first line such as ``time [s], acceleration [g]``."""
+    found = [re.search(r"\[(.*)\]", name) for name in re.split(r"[,;]", line)]
+    return [match[1].strip() if match else None for match in found]
+
+
+def _table(lines: list[tuple[int, str]], named: int, where: str) -> NDArray[np.float64]:
+    """Numbers of some lines, shape (lines, 1 or 2).
+
+    Args:
+        lines: Each with its number.
+        named: Number of columns in the header; 0 without one.
+        where: Name of the file.
+    """
     rows = [(number, _row(line, f"{where}:{number}")) for number, line in lines]
-    width = len(rows[0][1]) if rows else 1
-    if width not in (1, 2) or (units and len(units) != width):
+    width = len(rows[0][1]) if rows else max(named, 1)
+    if width not in (1, 2) or named not in (0, width):
         raise CaseError(
-            f"{where}:{rows[0][0] if rows else 1}: has {width} columns; a record has one column, or "
-            "two with the times first; use a file for each component"
+            f"{where}:{rows[0][0] if rows else 1}: has {width} columns, {named or 'none'} with a "
+            "name; a record has one column, or two with the times first; use a file for each "
+            "component"
         )
     for number, row in rows:
         if len(row) != width:
             raise CaseError(f"{where}:{number}: has {len(row)} numbers, not {width}")
-    numbers = np.array([row for _, row in rows], float).reshape(-1, width)
-    unit = _known_unit(units[-1], where) if units else None
-    factor = _time_unit(units[0], where) if len(units) == 2 else 1.0
-    step = even_step(numbers[:, 0] * factor, where) if width == 2 else None
-    return checked(Series(numbers[:, -1].copy(), step, unit), where)
+    return np.array([row for _, row in rows], float).reshape(-1, width)
 
 
 def of_array(array: NDArray, where: str) -> Series:
@@ -148,10 +165,11 @@ def checked(series: Series, where: str) -> Series:
     samples, step, _ = series
     if not LEAST <= len(samples) <= MOST:
         raise _too_few(len(samples), where)
-    if not np.isfinite(samples).all():
-        row = int(np.argmin(np.isfinite(samples)))
+    sound = np.abs(samples) <= LARGEST  # not a NaN
+    if not sound.all():
+        row = int(np.argmin(sound))
         raise CaseError(f"{where}: sample {row + 1:,} is {samples[row]}; a record has numbers only")
-    if not samples.any():
+    if not (np.abs(samples) >= SMALLEST).any():
         raise CaseError(f"{where}: all {len(samples):,} samples are 0; is this the right file?")
     if step is not None and not 1e-7 <= step <= 10:
         raise CaseError(f"{where}: the time between samples is {step:g} s, not 1e-7 to 10 s")

@@ -53,11 +53,12 @@ def test_samples_of_a_file_become_part_of_the_case(load, tmp_path):
     case = load()
     record = case.records["kobe"]
     assert (record.file, record.unit, record.step, record.quantity) == (
-        None, "g", 0.005, "acceleration")  # fmt: skip
+        "kobe.at2", "g", 0.005, "acceleration")  # fmt: skip
     (tmp_path / "kobe.at2").unlink()
     (tmp_path / "again.yaml").write_text(case.dump())
     again = Case.load("again.yaml")
-    assert again.records == case.records and again.digests() == case.digests()
+    assert again.records["kobe"].samples == record.samples
+    assert again.processed("kobe") is case.processed("kobe")
 
 
 def test_a_record_is_processed_once_and_then_the_same_arrays(load):
@@ -72,7 +73,13 @@ def test_samples_may_stand_in_a_case_made_in_python(load):
     """As an array; the scale counts."""
     samples = np.sin(np.arange(400) * 0.1)
     data = load().model_dump(mode="json")
-    data["records"]["kobe"] = {"samples": samples, "unit": "cm/s", "step": 0.01, "scale": 2}
+    data["records"]["kobe"] = {
+        "file": "none",
+        "samples": samples,
+        "unit": "cm/s",
+        "step": 0.01,
+        "scale": 2,
+    }
     record = Case.from_dict(data).processed("kobe")
     np.testing.assert_allclose(record.velocity[10:390], 0.02 * samples[10:390], rtol=1e-15)
 
@@ -93,7 +100,8 @@ def test_samples_may_stand_in_a_case_made_in_python(load):
         ("kobe.at2, band: [1 Hz]", "records.kobe.band"),
         ("kobe.at2, band: [1 m, 2 Hz]", "'1 m' has the wrong dimension; use one of: Hz, kHz"),
         ("kobe.at2, baseline: linear", "must be none or cubic, got 'linear'"),
-        ("kobe.at2, samples: [1, 2]", "records.kobe"),
+        ("kobe.at2, samples: [1, 2]", "9:26: records.kobe.samples: has 2 samples; a record has 10"),
+        ("kobe.at2, samples: 1 2 x", "records.kobe.samples: could not convert string to float"),
         ("kobe.at2, colour: red", "unknown key"),
     ],
 )  # fmt: skip

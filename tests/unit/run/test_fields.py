@@ -89,3 +89,48 @@ def test_bonds_of_faces_that_do_not_match_are_whole_at_the_start():
     assert sim.audit.counts["bonded_pairs"] > 0
     intact = bonds_of(sim)[1]
     assert (intact == 1).all()
+
+
+def thrown(fields):
+    """A cube thrown upwards, which falls back below its start, then another stage."""
+    stages = [{"name": n, "mode": "dynamic", "duration": t} for n, t in (("up", 0.3), ("on", 0.1))]
+    return simulate(
+        [{"group": "box", "box": {"size": [1, 1, 1]}}],
+        {"box": {"velocity": [0, 0, 2]}},
+        loads={"gravity": [0, 0, -10]},
+        output={"fields": fields},
+        stages=stages,
+        time={"step": 1e-4},
+    )
+
+
+def test_a_peak_velocity_is_the_largest_speed_since_the_stage_began():
+    """Up with 2 m/s, on top after 0.2 s, down with 1 m/s; then from 1 to 2 m/s."""
+    sim = thrown(["peak_velocity"])
+    (field,) = (f for f in OUTPUT_FIELDS if f.name == "peak_velocity")
+
+    def peaks():
+        return values_of(sim, [field])["peak_velocity"]
+
+    assert not peaks().any()
+    sim.run_stage("up")
+    np.testing.assert_allclose(peaks(), 2.0, rtol=1e-3)
+    sim.run_until(0.35)
+    np.testing.assert_allclose(peaks(), 1.5, rtol=1e-3)
+    sim = thrown(["velocity"])
+    sim.run()
+    assert not peaks().any()
+
+
+def test_peaks_go_on_in_a_resumed_run(tmp_path):
+    """To the bit."""
+    whole = thrown(["peak_velocity"])
+    whole.run_stage("up")
+    first = cdem.Simulation(whole.given_case, output=tmp_path / "out", threads=1)
+    first.run_until(0.12)
+    first.checkpoint()
+    first.close()
+    again = cdem.Simulation(whole.given_case, output=tmp_path / "out", resume=True, threads=1)
+    again.run_stage("up")
+    assert (again.core.array("node.peak")[0] == whole.core.array("node.peak")[0]).all()
+    assert again.core.array("node.peak")[0].any()
