@@ -156,10 +156,11 @@ void set_gravity(Core& c, const std::vector<Real>& g) {
   c.model.gravity = {g.at(0), g.at(1), g.at(2)};
 }
 
-void set_damping(Core& c, Real local, Real mass, Real stiffness, Real contact) {
+void set_damping(Core& c, Real local, Real mass, Real stiffness, Real contact, Real time) {
   c.model.damping = {local, mass};
   c.model.stiffness_damping = stiffness;
   c.model.contact_damping = contact;
+  c.model.damping_time = time;
 }
 
 /// Remove whole blocks, given by a flag for each node; excavated blocks keep their forces on the
@@ -266,7 +267,8 @@ void bind_setup(nb::class_<Core>& core) {
       .def("set_interfaces", &set_interfaces, "interfaces"_a)
       .def("set_curves", &set_curves)
       .def("set_gravity", &set_gravity)
-      .def("set_damping", &set_damping)
+      .def("set_damping", &set_damping, "local"_a, "mass"_a, "stiffness"_a, "contact"_a,
+           "stiffness_time"_a = 0.0)
       .def("set_lumped", [](Core& c, bool lumped) { c.model.lumped = lumped; })
       .def("start",
            [](Core& c, Array<Real> position) { init_state(c.model, c.state, position.data()); })

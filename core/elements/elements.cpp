@@ -21,11 +21,10 @@ void update_elements(const Model& m, State& s, Queue q, const ElementSet& e, Ele
   const Tiles tiles = tiles_of(e, es, s);
   const InOutTable work{es.damping_work.data(), e.stride}, energy{es.energy.data(), e.stride};
   const InOutTable stress{es.point_stress.data(), e.stride};
-  const Real damping_time = m.stiffness_damping * s.dt;
   const auto total = [&]<class Rotation, class Flow>(const Flow& flow) {
     for_each_tile(q, e.count, some, tiles,
                   CorotationalForce<Shape, Rotation, Flow>{.columns = columns,
-                                                           .damping_time = damping_time,
+                                                           .damping_time = damping_time(m, s),
                                                            .dt = s.dt,
                                                            .damping_work = work,
                                                            .flow = flow});

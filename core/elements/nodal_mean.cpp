@@ -135,7 +135,7 @@ void update_averaged_tets(const Model& m, State& s, Queue q) {
   for_each_tile(q, e.count, averaged_tets(s), tiles_of(e, s.tet4, s),
                 CorotationalForce<Tet4, FollowRotation, NodalFlow>{
                     .columns = element_columns<Tet4>(m, s, e),
-                    .damping_time = m.stiffness_damping * s.dt,
+                    .damping_time = damping_time(m, s),
                     .dt = s.dt,
                     .damping_work = {s.tet4.damping_work.data(), e.stride},
                     .flow = flow});

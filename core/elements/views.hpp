@@ -22,6 +22,11 @@ ElementColumns<Shape> element_columns(const Model& m, const State& s, const Elem
           .hourglass = {e.hourglass.data(), e.stride}};
 }
 
+/// Time of the stiffness dashpot of elements in this step  [s].
+inline Real damping_time(const Model& m, const State& s) {
+  return m.stiffness_damping * s.dt + m.damping_time;
+}
+
 /// Tiles of a set.
 inline Tiles tiles_of(const ElementSet& e, const ElementState& es, State& s) {
   const ElementTiles& t = es.tiles;

@@ -58,6 +58,13 @@ void describe_set(const char* rows, const PairSet& set, PairState& p, Stored&& s
   of_pair("stored", "J", "elastic energy", p.stored);
   of_pair("fracture", "J", "energy of fracture", p.fracture);
   of_pair("friction", "J", "frictional work", p.friction);
+  stored({.name = name + "damping_work",
+          .unit = "J",
+          .meaning = "work of the stiffness dashpot",
+          .rows = rows,
+          .layout = Layout::columns,
+          .optional = true},
+         p.damping_work);
   rebuilt("find_awake",
           {.name = name + "awake",
            .meaning = "blocks of pairs that are computed",

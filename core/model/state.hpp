@@ -97,6 +97,7 @@ struct PairState {
   Column<Real> rest;  // [axis * points + point][pair], see PairColumns; empty: all zero
   Column<Real> rise;  // [point][pair] the same
   Column<Real> stored, fracture, friction;
+  Column<Real> damping_work;  // of dashpots, see BondDashpots; empty until something damps
   Column<Real> history;  // [variable * points + point][pair], of the pair's law
   Column<Index> awake;   // blocks of pairs, see nodes/sleep.hpp
 };

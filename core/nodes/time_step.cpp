@@ -64,8 +64,8 @@ StepLimit step_limit(const Model& m, const State& s) {
   Real largest = highest_frequency_squared(m, s, false, limit);
   if (!(largest > 0)) largest = highest_frequency_squared(m, s, true, limit);
   // a dashpot of ratio xi at the highest frequency shortens the stable step by this factor
-  const Real xi =
-      m.stiffness_damping + m.contact_damping + 0.5 * m.damping.mass / std::sqrt(largest);
+  const Real rayleigh = 0.5 * (m.damping.mass / std::sqrt(largest) + m.damping_time * std::sqrt(largest));
+  const Real xi = m.stiffness_damping + m.contact_damping + rayleigh;
   limit.dt = 2 / std::sqrt(largest) * damped(xi) / std::sqrt(1 + m.damping.local) *
              strongly_damped(m.contact_damping);
   return limit;

@@ -14,6 +14,7 @@ from cdem.errors import CaseError
 from cdem.model.backfill import folded, nodes_of_groups, places
 from cdem.model.build import change
 from cdem.model.curves import constant, hand_over
+from cdem.model.damping import rayleigh_factors
 from cdem.model.interfaces import bonded_pairs, interfaces_of
 from cdem.model.supports import held_components, supports_of
 from cdem.rows import rows_of
@@ -41,11 +42,12 @@ def _local(stage: Stage) -> float:
     return stage.damping.local
 
 
-def damping_of(stage: Stage) -> tuple[float, float, float, float]:
-    """Local, mass, stiffness and contact damping of a stage."""
+def damping_of(stage: Stage) -> tuple[float, float, float, float, float]:
+    """Local, mass, stiffness and contact damping of a stage, and the factor of the stiffness [s]."""
     d = stage.damping
     assert d.contact is not None
-    return (_local(stage), d.mass, d.stiffness, d.contact)
+    rayleigh = rayleigh_factors(d.rayleigh)
+    return (_local(stage), d.mass + rayleigh.mass, d.stiffness, d.contact, rayleigh.stiffness)
 
 
 def is_lumped(stage: Stage) -> bool:
