@@ -18,6 +18,7 @@
 #include "core/diagnostics/energy.hpp"
 #include "core/diagnostics/fast_weakening.hpp"
 #include "core/diagnostics/unbalance.hpp"
+#include "core/elements/change_damping.hpp"
 #include "core/elements/report.hpp"
 #include "core/model/force_sets.hpp"
 #include "core/model/init_state.hpp"
@@ -156,11 +157,19 @@ void set_gravity(Core& c, const std::vector<Real>& g) {
   c.model.gravity = {g.at(0), g.at(1), g.at(2)};
 }
 
-void set_damping(Core& c, Real local, Real mass, Real stiffness, Real contact, Real time) {
+void set_damping(Core& c, Real local, Real mass, Real stiffness, Real contact) {
   c.model.damping = {local, mass};
   c.model.stiffness_damping = stiffness;
   c.model.contact_damping = contact;
-  c.model.damping_time = time;
+}
+
+MaxwellBranches branches(const std::vector<Real>& weights, const std::vector<Real>& rates) {
+  MaxwellBranches all;
+  if (weights.size() != rates.size() || weights.size() > std::size(all.weight))
+    throw nb::value_error("a weight and a rate for each branch");
+  std::copy(weights.begin(), weights.end(), all.weight);
+  std::copy(rates.begin(), rates.end(), all.rate);
+  return all;
 }
 
 /// Remove whole blocks, given by a flag for each node; excavated blocks keep their forces on the
@@ -267,8 +276,14 @@ void bind_setup(nb::class_<Core>& core) {
       .def("set_interfaces", &set_interfaces, "interfaces"_a)
       .def("set_curves", &set_curves)
       .def("set_gravity", &set_gravity)
-      .def("set_damping", &set_damping, "local"_a, "mass"_a, "stiffness"_a, "contact"_a,
-           "stiffness_time"_a = 0.0)
+      .def("set_damping", &set_damping)
+      .def(
+          "set_rock_damping",
+          [](Core& c, Real time, const std::vector<Real>& weights, const std::vector<Real>& rates) {
+            c.model.damping_time = time;
+            c.model.maxwell = branches(weights, rates);
+          },
+          "time"_a, "weights"_a, "rates"_a)
       .def("set_lumped", [](Core& c, bool lumped) { c.model.lumped = lumped; })
       .def("start",
            [](Core& c, Array<Real> position) { init_state(c.model, c.state, position.data()); })
@@ -333,6 +348,15 @@ void bind_run(nb::class_<Core>& core) {
            })
       .def("renew_step", [](Core& c) { renew_step(c.model, c.state); })
       .def("change_mass", [](Core& c, bool lumped) { change_mass(c.model, c.state, lumped); })
+      .def(
+          "change_rock_damping",
+          [](Core& c, Real time, const std::vector<Real>& weights, const std::vector<Real>& rates) {
+            change_damping(c.model, c.state, branches(weights, rates), time);
+          },
+          "time"_a, "weights"_a, "rates"_a)
+      .def(
+          "change_moduli", [](Core& c, Real part) { change_moduli(c.model, c.state, part); },
+          "part"_a)
       .def("move_exact_masses",
            [](Core& c) {  // as if no block had bonds any more
              c.model.lumped_while_bonded = false;

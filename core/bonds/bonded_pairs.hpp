@@ -197,6 +197,15 @@ struct ConformingBonds {
       rate[k] = nodes.velocity(pair_nodes.at(count + k, p)) - nodes.velocity(pair_nodes.at(k, p));
     move_inside<count>(indentation, rate);
   }
+  /// Mean positions of mated vertices one step ago, from those now.
+  template <class I, class T>
+  CDEM_HD void gather_means_before(I p, Real step, const Vec3<T>* mean, Vec3<T>* before) const {
+    for (Index k = 0; k < count; ++k) {
+      const Vec3<T> both =
+          nodes.velocity(pair_nodes.at(k, p)) + nodes.velocity(pair_nodes.at(count + k, p));
+      before[k] = mean[k] - T(0.5 * step) * both;
+    }
+  }
   template <class I>
   CDEM_HD BondSpring<Number<I>> spring(I p) const {
     return pairs.spring(p, pairs.area.at(0, p) / Number<I>(Real(count)));

@@ -19,9 +19,11 @@ OutForces corner_forces(State& s, const PairSet& p) {
   return {s.corner_force.data() + std::size_t(p.corner_first) * 4};
 }
 
-InOutTable damping_work(const PairSet& p, PairState& ps) {
-  ps.damping_work.resize(p.stride);
-  return {ps.damping_work.data(), p.stride};
+PairDashpots dashpots(const Model& m, const State& s, const PairSet& p, PairState& ps) {
+  return {.dt = s.dt_last,
+          .per_step = s.dt_last > 0 ? m.damping_time / s.dt_last : 0,
+          .force = {ps.dashpot.data(), p.point_stride},
+          .work = {ps.damping_work.data(), p.stride}};
 }
 
 template <Index count>
@@ -38,12 +40,9 @@ void update_bonds(PairKind<ConformingBonds<count>>, const Model& m, State& s, Qu
   const Blocks some = awake(plan, ps.awake);
   with_laws(interface_table(m), bonds,
             [&](const auto& kernel) { for_each_lane(q, p.count, some, kernel); });
-  if (m.damping_time > 0)
+  if (ps.dashpot.size() > 0)
     for_each_lane(q, p.count, some,
-                  BondDashpots<count>{.bonds = bonds,
-                                      .damping_time = m.damping_time,
-                                      .dt = s.dt,
-                                      .damping_work = damping_work(p, ps)});
+                  BondDashpots<count>{.bonds = bonds, .dashpots = dashpots(m, s, p, ps)});
 }
 
 void update_bonds(PairKind<OverlapBonds>, const Model& m, State& s, Queue q, const StepPlan& plan,
@@ -52,12 +51,9 @@ void update_bonds(PairKind<OverlapBonds>, const Model& m, State& s, Queue q, con
   const OverlapBonds bonds = overlap_bonds(m, s);
   with_laws(interface_table(m), bonds,
             [&](const auto& kernel) { for_each_item(q, p.count, some, kernel); });
-  if (m.damping_time > 0)
+  if (ps.dashpot.size() > 0)
     for_each_item(q, p.count, some,
-                  OverlapDashpots{.bonds = bonds,
-                                  .damping_time = m.damping_time,
-                                  .dt = s.dt,
-                                  .damping_work = damping_work(p, ps)});
+                  OverlapDashpots{.bonds = bonds, .dashpots = dashpots(m, s, p, ps)});
 }
 
 }  // namespace

@@ -109,6 +109,25 @@ void describe_set(const char* rows, const ElementSet& set, ElementState& e, Stor
           .rows = rows,
           .layout = Layout::columns},
          e.damping_work);
+  stored({.name = name + "branch",
+          .meaning = "strains of the springs of Maxwell branches at the Gauss points",
+          .rows = rows,
+          .numbers = 6 * MaxwellBranches::count * set.points,
+          .layout = Layout::columns,
+          .optional = true},
+         e.branch);
+  const Index modes = set.hourglass.size() > 0 ? 12 : 0;
+  stored(
+      {.name = name + "dashpot",
+       .unit = "Pa, m/s",
+       .meaning = "stress of Rayleigh dashpots at the Gauss points in the last step, then rates of "
+                  "hourglass modes",
+       .rows = rows,
+       .numbers = 6 * set.points + modes,
+       .parts = {{"stress", 6 * set.points}, {"modes", modes}},
+       .layout = Layout::columns,
+       .optional = true},
+      e.dashpot);
   stored({.name = name + "history",
           .unit = "1, and of the law",
           .meaning = "inelastic strain and state of the law at the Gauss points",

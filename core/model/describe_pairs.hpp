@@ -31,7 +31,7 @@ void describe_set(const char* rows, const PairSet& set, PairState& p, Stored&& s
             .rows = conforms(set) ? rows : "overlap_points",
             .numbers = axes * set.points,
             .layout = Layout::columns,
-            .optional = &numbers == &p.rest || &numbers == &p.rise},
+            .optional = &numbers == &p.rest || &numbers == &p.rise || &numbers == &p.dashpot},
            numbers);
   };
   stored({.name = name + "status",
@@ -58,6 +58,8 @@ void describe_set(const char* rows, const PairSet& set, PairState& p, Stored&& s
   of_pair("stored", "J", "elastic energy", p.stored);
   of_pair("fracture", "J", "energy of fracture", p.fracture);
   of_pair("friction", "J", "frictional work", p.friction);
+  of_point("dashpot", "N", "force of the dashpot along the axes of the pair in the last step",
+           p.dashpot, 3);
   stored({.name = name + "damping_work",
           .unit = "J",
           .meaning = "work of the stiffness dashpot",

@@ -107,7 +107,8 @@ struct Model {
   bool lumped_while_bonded = false;  // lumped masses for blocks with bonds, see list_lumped
   Real stiffness_damping = 0;        // Rayleigh, fraction of critical at the stability limit
   Real damping_time = 0;             // Rayleigh, of elements and of bonds that hold  [s]
-  Real contact_damping = 0;          // fraction of critical
+  MaxwellBranches maxwell;
+  Real contact_damping = 0;  // fraction of critical
   Real step_safety = 0.8;
   Real step_given = 0;   // 0: automatic
   Real speed_limit = 0;  // faster than this the run has gone wrong  [m/s]

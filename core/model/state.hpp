@@ -66,10 +66,11 @@ struct ElementState {
   Column<Real> stress;        // mean, for output: [6][element]
   Column<Real> point_stress;  // incremental formulations: [point * 6][element]
   Column<Real> energy, damping_work;
-  Column<Real> history;       // [point * point_history][element], see PointFlow; may be empty
-  Column<Real> plastic_work;  // empty where no material of the set flows
-  Column<Real> yielded;       // for output, see yield_bit; empty where plastic_work is
-  Column<Index> awake;        // blocks of elements, see nodes/sleep.hpp
+  Column<Real> branch, dashpot;  // see RockDamping; empty where a stage does not damp so
+  Column<Real> history;          // [point * point_history][element], see PointFlow; may be empty
+  Column<Real> plastic_work;     // empty where no material of the set flows
+  Column<Real> yielded;          // for output, see yield_bit; empty where plastic_work is
+  Column<Index> awake;           // blocks of elements, see nodes/sleep.hpp
   FusedBlocks fused;
 };
 
@@ -97,9 +98,9 @@ struct PairState {
   Column<Real> rest;  // [axis * points + point][pair], see PairColumns; empty: all zero
   Column<Real> rise;  // [point][pair] the same
   Column<Real> stored, fracture, friction;
-  Column<Real> damping_work;  // of dashpots, see BondDashpots; empty until something damps
-  Column<Real> history;  // [variable * points + point][pair], of the pair's law
-  Column<Index> awake;   // blocks of pairs, see nodes/sleep.hpp
+  Column<Real> dashpot, damping_work;  // see BondDashpots; empty where a stage does not damp so
+  Column<Real> history;                // [variable * points + point][pair], of the pair's law
+  Column<Index> awake;                 // blocks of pairs, see nodes/sleep.hpp
 };
 
 struct SpringState {
@@ -216,6 +217,7 @@ struct State {
   Real dt_stable = 0;        // which `dt` grows towards  [s]
   std::int64_t step = 0, rebuilds = 0, built_step = -1;
   Real energy_start = 0, energy_scale = 0;  // of the ledger
+  Real moduli = 1;                          // of the rock over those of the materials
   Real stopped_energy = 0;                  // kinetic energy taken out by kinetic relaxation  [J]
   Real taken_out = 0;                       // stored energy of removed blocks  [J]
   Real taken_out_friction = 0;              // loss of contacts on their faces until then  [J]

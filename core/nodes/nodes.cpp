@@ -35,7 +35,7 @@ void advance_fused(const Model& m, State& s, Queue q, const StepPlan& plan, cons
   const Column<Index>& blocks = lumped ? fused.lumped : fused.blocks;
   const CorotationalForce<Shape, FollowRotation, Flow> element{
       .columns = element_columns<Shape>(m, s, e),
-      .damping_time = damping_time(m, s),
+      .damping_time = m.stiffness_damping * s.dt,
       .dt = s.dt,
       .damping_work = {es.damping_work.data(), e.stride},
       .flow = flow};

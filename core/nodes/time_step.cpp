@@ -36,6 +36,7 @@ NodeFrequency node_frequency(const Model& m, const State& s, bool held) {
           .force = s.nodes.force.data(),
           .potential = s.node_potential.data(),
           .bonds = s.node_bonds.data(),
+          .stiffer = m.maxwell.stiffer(),
           .held = held};
 }
 
@@ -64,7 +65,8 @@ StepLimit step_limit(const Model& m, const State& s) {
   Real largest = highest_frequency_squared(m, s, false, limit);
   if (!(largest > 0)) largest = highest_frequency_squared(m, s, true, limit);
   // a dashpot of ratio xi at the highest frequency shortens the stable step by this factor
-  const Real rayleigh = 0.5 * (m.damping.mass / std::sqrt(largest) + m.damping_time * std::sqrt(largest));
+  const Real rayleigh =
+      0.5 * (m.damping.mass / std::sqrt(largest) + m.damping_time * std::sqrt(largest));
   const Real xi = m.stiffness_damping + m.contact_damping + rayleigh;
   limit.dt = 2 / std::sqrt(largest) * damped(xi) / std::sqrt(1 + m.damping.local) *
              strongly_damped(m.contact_damping);

@@ -89,6 +89,7 @@ class Build:
             `pairs_loose_joints`.
         initial: Initial stress of the rock, or None.
         modules: Modules by name.
+        moduli: Moduli of the rock over those of its materials in the present stage.
     """
 
     case: Case
@@ -103,6 +104,7 @@ class Build:
     paired: NDArray[np.bool_]
     initial: InitialState | None
     modules: dict[str, Module]
+    moduli: float = 1.0
 
     def __post_init__(self) -> None:
         self.born = self.start_position
@@ -248,6 +250,7 @@ def _assemble(
     curves: Curves,
     added_mass: Floats | None,
     modules: dict[str, Module],
+    moduli: float = 1.0,
 ) -> Assembly:
     """Arrays of the core, with the present supports and loads of the case.
 
@@ -284,6 +287,7 @@ def _assemble(
         safety=case.time.safety,
         added_mass=added_mass,
         one_point=case.elements.hexahedra == "one-point",
+        moduli=moduli,
     )
     at_birth = replace(topology, node_position=born)
     parts = assemble(at_birth, properties, native.padded_stride, modules.values())
@@ -373,6 +377,7 @@ def change(built: Build, *, places: bool = False) -> dict[str, NDArray]:
         built.curves,
         built.assembly.added_mass,
         built.modules,
+        built.moduli,
     )
     for module in built.modules.values():
         module.refuse_change(case, built.assembly.counts, parts.counts)

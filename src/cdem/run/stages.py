@@ -14,7 +14,7 @@ from cdem.errors import CaseError
 from cdem.model.backfill import folded, nodes_of_groups, places
 from cdem.model.build import change
 from cdem.model.curves import constant, hand_over
-from cdem.model.damping import rayleigh_factors
+from cdem.model.damping import branches_of, rayleigh_factors
 from cdem.model.interfaces import bonded_pairs, interfaces_of
 from cdem.model.supports import held_components, supports_of
 from cdem.rows import rows_of
@@ -42,12 +42,21 @@ def _local(stage: Stage) -> float:
     return stage.damping.local
 
 
-def damping_of(stage: Stage) -> tuple[float, float, float, float, float]:
-    """Local, mass, stiffness and contact damping of a stage, and the factor of the stiffness [s]."""
+def damping_of(stage: Stage) -> tuple[float, float, float, float]:
+    """Local, mass, stiffness and contact damping of a stage."""
     d = stage.damping
     assert d.contact is not None
-    rayleigh = rayleigh_factors(d.rayleigh)
-    return (_local(stage), d.mass + rayleigh.mass, d.stiffness, d.contact, rayleigh.stiffness)
+    return (_local(stage), d.mass + rayleigh_factors(d.rayleigh).mass, d.stiffness, d.contact)
+
+
+def rock_damping_of(stage: Stage) -> tuple[float, list[float], list[float]]:
+    """Rayleigh factor of the stiffness [s]; weights and rates [1/s] of the Maxwell branches."""
+    branches = branches_of(stage.damping.maxwell)
+    return (
+        rayleigh_factors(stage.damping.rayleigh).stiffness,
+        list(branches.weight),
+        branches.rate,
+    )
 
 
 def is_lumped(stage: Stage) -> bool:
@@ -65,9 +74,12 @@ def apply_settings(sim: RunState, index: int) -> None:
     stage = sim.case.stages[index]
     for path, value in stage.set.items():
         sim.case.set(path, value)
-    if stage.set:
+    moduli = branches_of(stage.damping.maxwell).part
+    if stage.set or moduli != sim.build.moduli:
+        sim.build.moduli = moduli
         update_core(sim, index)
     sim.core.set_damping(*damping_of(stage))
+    sim.core.set_rock_damping(*rock_damping_of(stage))
     sim.core.set_lumped(is_lumped(stage))
 
 
@@ -113,6 +125,7 @@ def begin(sim: RunState) -> StageState:
     change_bolts(sim, stage.name)
     begin_surfaces(sim, stage.name)
     sim.core.change_mass(is_lumped(stage))
+    damp_rock(sim, stage)
     apply_settings(sim, index)
     hand_over(sim.core, sim.build.curves, sim.begins)
     refuse_curves_over(sim)
@@ -211,6 +224,17 @@ def begin_surfaces(sim: RunState, stage: str) -> None:
     come = np.array([item.stage == stage for _, item in sim.case.surface_entries], np.int8)
     if come.any() and sim.stage_index > 0:
         sim.core.begin_surfaces(come)
+
+
+def damp_rock(sim: RunState, stage: Stage) -> None:
+    """Start the branches and dashpots of a stage, and give the rock its moduli; stresses stay."""
+    sim.core.change_rock_damping(*rock_damping_of(stage))
+    moduli = float(sim.core.scalars()["moduli"])
+    if moduli != sim.build.moduli:  # a search has brought the state back
+        sim.build.moduli = moduli
+        update_core(sim, sim.stage_index)
+    if moduli != (now := branches_of(stage.damping.maxwell).part):
+        sim.core.change_moduli(now)
 
 
 def release_part(sim: RunState, stage: StageState) -> bool:
