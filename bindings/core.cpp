@@ -401,6 +401,20 @@ void bind_diagnostics(nb::class_<Core>& core) {
           },
           "Interface, ratio and place of contacts whose friction falls with the speed.")
       .def("unbalance_ratio", [](const Core& c) { return unbalance_ratio(c.model, c.state); })
+      .def(
+          "stable_step",
+          [](Core& c, const std::vector<Real>& damping, Real time, const std::vector<Real>& weights,
+             const std::vector<Real>& rates, bool lumped) {
+            return stable_step(c.model, c.state,
+                               {.nodes = {damping.at(0), damping.at(1)},
+                                .stiffness = damping.at(2),
+                                .contact = damping.at(3),
+                                .time = time,
+                                .maxwell = branches(weights, rates),
+                                .lumped = lumped});
+          },
+          "damping"_a, "time"_a, "weights"_a, "rates"_a, "lumped"_a,
+          "Stable step with the damping of a stage: local, mass, stiffness, contact; then of rock.")
       .def("step_limit", [](const Core& c) {
         const StepLimit l = step_limit(c.model, c.state);
         return std::make_tuple(l.dt, l.node, l.element_frequency_squared,

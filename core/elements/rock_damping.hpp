@@ -27,12 +27,12 @@ struct RockDamping {
   static constexpr Index branch_rows = 6 * branches * Shape::points;
   static constexpr Index dashpot_rows = 6 * Shape::points + modes;
 
-  InOutTable branch;    // [(point * branches + branch) * 6 + component][element] z; null: none
-  InOutTable dashpot;   // [point * 6 + component][element] its stress in the last step  [Pa], then
-                        // the rates of the hourglass modes  [m/s]; null: none
-  bool ahead;           // is the state that of one step ago?
-  Real dt;              // of the last step  [s]
-  Real time, per_step;  // of the dashpot  [s], and over dt; 0 before there was a step
+  InOutTable branch;   // [(point * branches + branch) * 6 + component][element] z; null: none
+  InOutTable dashpot;  // [point * 6 + component][element] its stress in the last step  [Pa], then
+                       // the rates of the hourglass modes  [m/s]; null: none
+  bool ahead;          // is the state that of one step ago?
+  Real dt;             // of the last step  [s]
+  Real per_step;       // time of the dashpot over dt; 0 before there was a step
   Real weight[branches], left[branches], share[branches];
 
   /// Move on by one step: adds to the stresses, and to the forces of hourglass modes. Returns the

@@ -35,7 +35,6 @@ RockDamping<Shape> rock_damping(const Model& m, const State& s, const ElementSet
       .dashpot = {es.dashpot.size() > 0 ? es.dashpot.data() : nullptr, e.stride},
       .ahead = ahead,
       .dt = dt,
-      .time = m.damping_time,
       .per_step = dt > 0 ? m.damping_time / dt : 0};
   for (Index j = 0; j < MaxwellBranches::count; ++j) {
     const Real rate = m.maxwell.rate[j] * dt;

@@ -73,6 +73,28 @@ StepLimit step_limit(const Model& m, const State& s) {
   return limit;
 }
 
+Real stable_step(Model& m, const State& s, const StageDamping& damping) {
+  const auto exchange = [&m](const StageDamping& d) {
+    const StageDamping was{.nodes = m.damping,
+                           .stiffness = m.stiffness_damping,
+                           .contact = m.contact_damping,
+                           .time = m.damping_time,
+                           .maxwell = m.maxwell,
+                           .lumped = m.lumped};
+    m.damping = d.nodes;
+    m.stiffness_damping = d.stiffness;
+    m.contact_damping = d.contact;
+    m.damping_time = d.time;
+    m.maxwell = d.maxwell;
+    m.lumped = d.lumped;
+    return was;
+  };
+  const StageDamping own = exchange(damping);
+  const Real dt = step_limit(m, s).dt;
+  exchange(own);
+  return dt;
+}
+
 void renew_step(const Model& m, State& s) {
   if (s.nodes.relax_mass.size() > 0) {  // its masses are made for any step
     s.dt_stable = s.dt;

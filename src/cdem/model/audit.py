@@ -18,6 +18,7 @@ from cdem.mesh.element_shapes import NODES, SLIVER
 from cdem.model.build import Build
 from cdem.model.compliance import bonded_interfaces, coarse_beams
 from cdem.model.contact_overlaps import contact_interfaces
+from cdem.model.damping_report import rock_dampings
 from cdem.model.disc_areas import disc_areas, disc_lines, weak_bridges
 from cdem.model.held import unheld_blocks
 from cdem.model.meshed_strength import meshed_strengths, strength_text
@@ -67,6 +68,7 @@ class Audit:
         self.discs = disc_areas(build)
         self.modules = {name: module.report(build) for name, module in build.modules.items()}
         self.step = self._step()
+        self.damping = rock_dampings(build, self.interfaces)
         self.warnings = self._warnings()
 
     # ------------------------------------------------------------------ parts
@@ -270,6 +272,7 @@ class Audit:
             **self.modules,
             "initial_stress": self._build.initial.as_dict() if self._build.initial else None,
             "time_step": self.step,
+            "damping": [one.as_dict() for one in self.damping],
             "memory_bytes": self.memory,
             "warnings": self.warnings,
         }
@@ -310,6 +313,7 @@ class Audit:
             "",
             f"  time step {s['dt']:.4g} s, stable below {s['limit']:.4g} s; {s['words']} rule it",
             *([f"    {s['remedy']}"] if s["remedy"] else []),
+            *(line for one in self.damping for line in one.lines()),
             f"  memory of model and state {self.memory / 1e6:,.0f} MB",
         ]
         if estimate:

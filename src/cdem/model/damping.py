@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cdem.case.damping_schema import Maxwell, Rayleigh
+from cdem.case.schema import Stage
 
 Floats = NDArray[np.float64]
 
@@ -107,6 +108,36 @@ def branches_of(maxwell: Maxwell | None) -> Branches:
     if maxwell.reference == "static":
         return own
     return Branches(own.frequency, own.weight, _rounded(1 / own.storage(maxwell.reference)))
+
+
+def damping_of(stage: Stage) -> tuple[float, float, float, float]:
+    """Local, mass, stiffness and contact damping of a stage."""
+    d = stage.damping
+    assert d.contact is not None
+    return (_local(stage), d.mass + rayleigh_factors(d.rayleigh).mass, d.stiffness, d.contact)
+
+
+def rock_damping_of(stage: Stage) -> tuple[float, list[float], list[float]]:
+    """Rayleigh factor of the stiffness [s]; weights and rates [1/s] of the Maxwell branches."""
+    branches = branches_of(stage.damping.maxwell)
+    time = rayleigh_factors(stage.damping.rayleigh).stiffness
+    return time, list(branches.weight), branches.rate
+
+
+def is_lumped(stage: Stage) -> bool:
+    """Whether a stage moves lumped masses.
+
+    A static stage only looks for rest, which does not depend on inertia, and lumped masses allow a
+    longer step (2.2 times for a tet); local damping scales forces node by node, which is stable
+    only for lumped masses.
+    """
+    return stage.mode == "static" or _local(stage) > 0
+
+
+def _local(stage: Stage) -> float:
+    """Local damping of a stage; the case has filled in its default."""
+    assert stage.damping.local is not None
+    return stage.damping.local
 
 
 @cache

@@ -14,7 +14,7 @@ from cdem.errors import CaseError
 from cdem.model.backfill import folded, nodes_of_groups, places
 from cdem.model.build import change
 from cdem.model.curves import constant, hand_over
-from cdem.model.damping import branches_of, rayleigh_factors
+from cdem.model.damping import branches_of, damping_of, is_lumped, rock_damping_of
 from cdem.model.interfaces import bonded_pairs, interfaces_of
 from cdem.model.supports import held_components, supports_of
 from cdem.rows import rows_of
@@ -34,39 +34,6 @@ LEAST_GAIN = 0.1
 """Part of the unbalance ratio below which a solve must bring it, or it is taken back."""
 FRAMES = 50
 """Frames of a dynamic stage when output.every is not given."""
-
-
-def _local(stage: Stage) -> float:
-    """Local damping of a stage; the case has filled in its default."""
-    assert stage.damping.local is not None
-    return stage.damping.local
-
-
-def damping_of(stage: Stage) -> tuple[float, float, float, float]:
-    """Local, mass, stiffness and contact damping of a stage."""
-    d = stage.damping
-    assert d.contact is not None
-    return (_local(stage), d.mass + rayleigh_factors(d.rayleigh).mass, d.stiffness, d.contact)
-
-
-def rock_damping_of(stage: Stage) -> tuple[float, list[float], list[float]]:
-    """Rayleigh factor of the stiffness [s]; weights and rates [1/s] of the Maxwell branches."""
-    branches = branches_of(stage.damping.maxwell)
-    return (
-        rayleigh_factors(stage.damping.rayleigh).stiffness,
-        list(branches.weight),
-        branches.rate,
-    )
-
-
-def is_lumped(stage: Stage) -> bool:
-    """Whether a stage moves lumped masses.
-
-    A static stage only looks for rest, which does not depend on inertia, and lumped masses allow a
-    longer step (2.2 times for a tet); local damping scales forces node by node, which is stable
-    only for lumped masses.
-    """
-    return stage.mode == "static" or _local(stage) > 0
 
 
 def apply_settings(sim: RunState, index: int) -> None:
