@@ -3,7 +3,7 @@
 #pragma once
 
 #include "core/base/elementary.hpp"
-#include "core/elements/rock_damping.hpp"
+#include "core/elements/shapes.hpp"
 #include "core/materials/laws.hpp"
 
 namespace cdem {
@@ -217,6 +217,12 @@ struct PointFlow {
     history.set(row(q, 4), e, strain.yz);
     history.set(row(q, 5), e, strain.zx);
   }
+};
+
+/// Elements without damping that remembers the last step, see RockDamping. Their kernels have no
+/// code for it.
+struct NoRockDamping {
+  static constexpr bool any = false;
 };
 
 /// Element forces of the total corotational form.

@@ -2,15 +2,10 @@
 // dashpots beside the elastic rock.
 #pragma once
 
-#include "core/elements/point_strains.hpp"
+#include "core/elements/shapes.hpp"
 #include "core/records/rules.hpp"
 
 namespace cdem {
-
-/// Elements without it. Their kernels have no code for it.
-struct NoRockDamping {
-  static constexpr bool any = false;
-};
 
 /// Stress of Maxwell branches and Rayleigh dashpots at the Gauss points, beside that of the law.
 /// Both follow from the change of strain in the last step, with the strain before it from the

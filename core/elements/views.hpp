@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/elements/corotational.hpp"
+#include "core/elements/rock_damping.hpp"
 #include "core/elements/tiles.hpp"
 #include "core/model/model.hpp"
 #include "core/model/state.hpp"

@@ -1,6 +1,7 @@
 // elements_damped.cpp - the loops over kernels of rock with damping that remembers, instantiated.
 // Compiled as C++, and as CUDA.
 #include "core/elements/nodal_dilatation.hpp"
+#include "core/elements/rock_damping.hpp"
 #include "core/elements/tile_loops.hpp"
 #if defined(__CUDACC__)  // calls between files cost there
 #include "core/materials/flow_by.hpp"

@@ -84,28 +84,13 @@ void describe_fused(const char* rows, FusedBlocks& fused, Rebuilt&& rebuilt) {
           fused.row);
 }
 
-/// One set of elements: part of `describe_state`.
-template <class Stored, class Rebuilt>
-void describe_set(const char* rows, const ElementSet& set, ElementState& e, Stored&& stored,
-                  Rebuilt&& rebuilt) {
+/// Damping of the rock of a set: part of `describe_state`.
+template <class Stored>
+void describe_damping(const char* rows, const ElementSet& set, ElementState& e, Stored&& stored) {
   const std::string name = std::string(rows) + ".";
-  stored({.name = name + "point_stress",
-          .unit = "Pa",
-          .meaning = "stress at the Gauss points, of incremental formulations",
-          .rows = rows,
-          .numbers = 6 * set.points,
-          .layout = Layout::columns,
-          .optional = true},
-         e.point_stress);
-  stored({.name = name + "energy",
-          .unit = "J",
-          .meaning = "stored energy",
-          .rows = rows,
-          .layout = Layout::columns},
-         e.energy);
   stored({.name = name + "damping_work",
           .unit = "J",
-          .meaning = "work of the stiffness dashpot",
+          .meaning = "work of dashpots and Maxwell branches",
           .rows = rows,
           .layout = Layout::columns},
          e.damping_work);
@@ -128,6 +113,28 @@ void describe_set(const char* rows, const ElementSet& set, ElementState& e, Stor
        .layout = Layout::columns,
        .optional = true},
       e.dashpot);
+}
+
+/// One set of elements: part of `describe_state`.
+template <class Stored, class Rebuilt>
+void describe_set(const char* rows, const ElementSet& set, ElementState& e, Stored&& stored,
+                  Rebuilt&& rebuilt) {
+  const std::string name = std::string(rows) + ".";
+  stored({.name = name + "point_stress",
+          .unit = "Pa",
+          .meaning = "stress at the Gauss points, of incremental formulations",
+          .rows = rows,
+          .numbers = 6 * set.points,
+          .layout = Layout::columns,
+          .optional = true},
+         e.point_stress);
+  stored({.name = name + "energy",
+          .unit = "J",
+          .meaning = "stored energy",
+          .rows = rows,
+          .layout = Layout::columns},
+         e.energy);
+  describe_damping(rows, set, e, stored);
   stored({.name = name + "history",
           .unit = "1, and of the law",
           .meaning = "inelastic strain and state of the law at the Gauss points",

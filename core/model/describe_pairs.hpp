@@ -20,7 +20,8 @@ void describe_set(const char* rows, const PairSet& set, PairState& p, Stored&& s
             .unit = unit,
             .meaning = meaning,
             .rows = rows,
-            .layout = Layout::columns},
+            .layout = Layout::columns,
+            .optional = &numbers == &p.damping_work},
            numbers);
   };
   const auto of_point = [&](const char* column, const char* unit, const char* meaning,
@@ -60,13 +61,7 @@ void describe_set(const char* rows, const PairSet& set, PairState& p, Stored&& s
   of_pair("friction", "J", "frictional work", p.friction);
   of_point("dashpot", "N", "force of the dashpot along the axes of the pair in the last step",
            p.dashpot, 3);
-  stored({.name = name + "damping_work",
-          .unit = "J",
-          .meaning = "work of the stiffness dashpot",
-          .rows = rows,
-          .layout = Layout::columns,
-          .optional = true},
-         p.damping_work);
+  of_pair("damping_work", "J", "work of the dashpots", p.damping_work);
   rebuilt("find_awake",
           {.name = name + "awake",
            .meaning = "blocks of pairs that are computed",

@@ -1,6 +1,4 @@
-"""Damping of rock by Rayleigh dashpots and Maxwell branches: energy, rotation, step, bits, resume.
-
-The ratio itself is in the verification problems `rayleigh_ratio` and `maxwell_ratio`."""
+"""Damping of rock by Rayleigh dashpots and Maxwell branches: ratio, energy, rotation, step, bits."""
 
 import numpy as np
 import pytest
@@ -9,6 +7,7 @@ from scenes import case, digest
 import cdem
 from cdem.errors import UnstableError
 from cdem.rows import rows_of
+from cdem.verification.runner import problems
 
 RAYLEIGH = {"rayleigh": {"ratio": 0.1, "frequency": 60}}
 MAXWELL = {"maxwell": {"ratio": 0.1, "band": [10, 1000]}}
@@ -46,6 +45,14 @@ def ring(made, threads=1, steps=600):
     return sim
 
 
+@pytest.mark.parametrize("name", ["rayleigh_ratio", "maxwell_ratio"])
+def test_the_ratio_of_a_ringing_bar_is_as_asked(name):
+    """The verification problems: decrement and frequency by formula."""
+    (problem,) = problems([name])
+    outcome = problem.run(threads=1)
+    assert outcome.passed, [check.texts() for check in outcome.checks if not check.passed]
+
+
 @KINDS
 @pytest.mark.parametrize("shape", SHAPES)
 @pytest.mark.parametrize("bonds", [False, True], ids=["whole", "bonds"])
@@ -76,7 +83,9 @@ def test_the_energy_of_damped_rock_that_flows_closes(damping):
 def test_a_turning_block_is_not_damped(damping, shape):
     """Over two turns a block loses less than its centrifugal strain stores, 1e-4 of its energy."""
     sim = cdem.Simulation(bar(damping, shape), threads=1)
-    sim.core.set_damping(0.0, 0.0, 0.0, 0.0)  # without Rayleigh's mass part, which brakes all motion
+    sim.core.set_damping(
+        0.0, 0.0, 0.0, 0.0
+    )  # without Rayleigh's mass part, which brakes all motion
     x = sim.fields["position"] - sim.fields["position"].mean(axis=0)
     rows_of(sim.core, "node.motion").velocity[:] = np.cross([0, 0, 10.0], x)
     sim.step(int(4 * np.pi / 10 / sim.core.scalars()["dt"]))
@@ -87,7 +96,10 @@ def test_a_turning_block_is_not_damped(damping, shape):
 
 @pytest.mark.parametrize(
     "damping",
-    [{"rayleigh": {"ratio": 0.2, "frequency": 100}}, {"maxwell": {"ratio": 0.1, "band": [0.1, 10]}}],
+    [
+        {"rayleigh": {"ratio": 0.2, "frequency": 100}},
+        {"maxwell": {"ratio": 0.1, "band": [0.1, 10]}},
+    ],
     ids=["rayleigh", "maxwell"],
 )
 def test_the_limit_of_the_step_is_sharp(damping):

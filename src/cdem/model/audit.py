@@ -313,13 +313,17 @@ class Audit:
             "",
             f"  time step {s['dt']:.4g} s, stable below {s['limit']:.4g} s; {s['words']} rule it",
             *([f"    {s['remedy']}"] if s["remedy"] else []),
-            *(line for one in self.damping for line in one.lines()),
+            *self._damping_text(),
             f"  memory of model and state {self.memory / 1e6:,.0f} MB",
         ]
         if estimate:
             lines.append(estimate.rstrip())
         lines += [""] + [f"  warning: {w}" for w in self.warnings]
         return "\n".join(lines).rstrip() + "\n"
+
+    def _damping_text(self) -> list[str]:
+        """Lines on the damping of rock in each stage."""
+        return [line for one in self.damping for line in one.lines()]
 
     def _interfaces_text(self) -> list[str]:
         """Lines on pairs of faces that are bonded, or that begin broken."""

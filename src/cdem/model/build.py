@@ -252,10 +252,8 @@ def _assemble(
     modules: dict[str, Module],
     moduli: float = 1.0,
 ) -> Assembly:
-    """Arrays of the core, with the present supports and loads of the case.
-
-    Mass scaling is as given, or follows from the case. Elements at `born` have no stress.
-    """
+    """Arrays of the core for the present case; elements at `born` have no stress, and mass scaling
+    is as given or follows from the case."""
     names = topology.group_names
     entries = interface_entries(case, laws, names, topology.node_position)
     materials = [case.materials[case.groups[name].material] for name in names]

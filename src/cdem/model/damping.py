@@ -82,12 +82,16 @@ class Branches:
 
     def ratio(self, frequency: Floats | float) -> Floats:
         """Fraction of critical damping at frequencies [Hz]."""
-        loss, storage = _moduli(np.asarray(frequency), np.array(self.frequency), np.array(self.weight))
+        loss, storage = _moduli(
+            np.asarray(frequency), np.array(self.frequency), np.array(self.weight)
+        )
         return loss / (2 * storage)
 
     def storage(self, frequency: float) -> float:
         """Storage modulus at a frequency [Hz] over the modulus of slow loading [1]."""
-        return float(_moduli(np.array(frequency), np.array(self.frequency), np.array(self.weight))[1])
+        return float(
+            _moduli(np.array(frequency), np.array(self.frequency), np.array(self.weight))[1]
+        )
 
 
 def _moduli(f: Floats, peak: Floats, weight: Floats) -> tuple[Floats, Floats]:
@@ -167,7 +171,9 @@ def _least_mean(f: Floats, ratio: float, q: Floats, power: int) -> Floats:
         most = np.abs(error).max()
         size = (np.abs(error) / most) ** (power / 2)
         # the derivative of |e|^(p/2) is p/2 |e|^(p/2 - 1) sign(e) de
-        rows = power / 2 * (size / np.maximum(np.abs(error), 1e-12) * np.sign(error))[:, None] * slope
+        rows = (
+            power / 2 * (size / np.maximum(np.abs(error), 1e-12) * np.sign(error))[:, None] * slope
+        )
         normal = rows.T @ rows
         lift = damping * np.diag(np.diag(normal))
         way = np.clip(-np.linalg.solve(normal + lift, rows.T @ size), -LONGEST, LONGEST)

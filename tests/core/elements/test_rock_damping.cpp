@@ -1,6 +1,7 @@
 // Damping of rock that remembers: Maxwell branches and Rayleigh dashpots in elements.
 #include "core/elements/change_damping.hpp"
 #include "core/elements/corotational.hpp"
+#include "core/elements/rock_damping.hpp"
 #include "core/elements/views.hpp"
 #include "tests/core/elements/reference.hpp"
 

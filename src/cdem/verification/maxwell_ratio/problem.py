@@ -35,7 +35,9 @@ def run(study):
     loss, more = (weights * x / (1 + x**2)).sum(1), (weights * x**2 / (1 + x**2)).sum(1)
     ratio = loss / (2 * (1 + more))
     for kind, most in (("smallest", ratio.min()), ("largest", ratio.max())):
-        study.check(f"{kind} ratio of the branches in the band", theory=0.05, ours=most, within=0.03)
+        study.check(
+            f"{kind} ratio of the branches in the band", theory=0.05, ours=most, within=0.03
+        )
     cases = [("hex8", f) for f in FREQUENCIES]
     cases += [(shape, 2.0) for shape in ("one-point", "wedge6", "pyramid5", "tet4")]
     for shape, frequency in cases:
