@@ -83,7 +83,7 @@ void change_damping(Model& m, State& s, const MaxwellBranches& maxwell, Real dam
 }
 
 void change_moduli(Model& m, State& s, Real part) {
-  const Real factor = part / s.moduli;
+  const Real factor = part / moduli_part(s);
   const auto sampled = energies_of(m, s);
   report_elements(m, s, {});
   const auto before = energies_of(m, s);
@@ -94,7 +94,7 @@ void change_moduli(Model& m, State& s, Real part) {
     for (Real& strain : on_host(*column)) strain /= factor;
   for (Column<Real>* column : {&m.material_lambda, &m.material_mu})
     for (Real& modulus : on_host(*column)) modulus *= factor;
-  s.moduli = part;
+  s.moduli.assign(std::vector<Real>(part == 1 ? 0 : 1, part));
   report_elements(m, s, {});
   std::size_t set = 0;
   for_each_element_set(m, s, [&](auto, const ElementSet& e, ElementState& es) {

@@ -55,10 +55,6 @@ void describe_scalars(State& s, Visit&& visit) {
         s.dt_last);
   visit(ScalarInfo{.name = "dt_stable", .unit = "s", .meaning = "step that dt grows towards"},
         s.dt_stable);
-  visit(ScalarInfo{.name = "moduli",
-                   .unit = "1",
-                   .meaning = "moduli of the rock over those of the materials"},
-        s.moduli);
   visit(ScalarInfo{.name = "step", .unit = "1", .meaning = "steps done"}, s.step);
   visit(ScalarInfo{.name = "rebuilds", .unit = "1", .meaning = "outer pair lists made so far"},
         s.rebuilds);

@@ -217,7 +217,6 @@ struct State {
   Real dt_stable = 0;        // which `dt` grows towards  [s]
   std::int64_t step = 0, rebuilds = 0, built_step = -1;
   Real energy_start = 0, energy_scale = 0;  // of the ledger
-  Real moduli = 1;                          // of the rock over those of the materials
   Real stopped_energy = 0;                  // kinetic energy taken out by kinetic relaxation  [J]
   Real taken_out = 0;                       // stored energy of removed blocks  [J]
   Real taken_out_friction = 0;              // loss of contacts on their faces until then  [J]
@@ -232,6 +231,7 @@ struct State {
   GroundState ground;
   ElementState tet4, pyramid5, wedge6, hex8;
   NodalMeans nodal;
+  Column<Real> moduli;  // of the rock over those of its materials; empty: the same
   PairState triangles, quads, overlaps;
   Modules::Data<StatePart> modules;
   Column<Index> released_overlaps;  // their contacts are still to be found in this step

@@ -167,12 +167,12 @@ def test_damping_that_comes_and_goes_keeps_stress_and_energy():
     sim.run_stage("rest")
     rested = sim.core.stress()["hex8"].copy()
     sim.run_until(sim.time + 1e-9)
-    assert sim.core.scalars()["moduli"] < 0.95
+    assert sim.core.fields()["rock.moduli"][0] < 0.95
     assert np.abs(sim.core.stress()["hex8"] - rested).max() < 1e-5 * np.abs(rested).max()
     assert sim.core.fields()["hex8.branch"].any()
     sim.run_stage("shake")
     sim.run_until(sim.time + 1e-9)
-    assert sim.core.scalars()["moduli"] == 1
+    assert len(sim.core.fields()["rock.moduli"]) == 0
     fields = sim.core.fields()
     assert len(fields["hex8.branch"]) == 0
     assert fields["hex8.dashpot"].any()

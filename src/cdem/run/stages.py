@@ -196,7 +196,8 @@ def begin_surfaces(sim: RunState, stage: str) -> None:
 def damp_rock(sim: RunState, stage: Stage) -> None:
     """Start the branches and dashpots of a stage, and give the rock its moduli; stresses stay."""
     sim.core.change_rock_damping(*rock_damping_of(stage))
-    moduli = float(sim.core.scalars()["moduli"])
+    given = sim.core.fields()["rock.moduli"]
+    moduli = float(given[0]) if len(given) else 1.0
     if moduli != sim.build.moduli:  # a search has brought the state back
         sim.build.moduli = moduli
         update_core(sim, sim.stage_index)
