@@ -18,6 +18,7 @@
 #include "core/diagnostics/energy.hpp"
 #include "core/diagnostics/fast_weakening.hpp"
 #include "core/diagnostics/unbalance.hpp"
+#include "core/elements/change_damping.hpp"
 #include "core/elements/report.hpp"
 #include "core/model/force_sets.hpp"
 #include "core/model/init_state.hpp"
@@ -163,6 +164,15 @@ void set_damping(Core& c, Real local, Real mass, Real stiffness, Real contact) {
   c.model.contact_damping = contact;
 }
 
+MaxwellBranches branches(const std::vector<Real>& weights, const std::vector<Real>& rates) {
+  MaxwellBranches all;
+  if (weights.size() != rates.size() || weights.size() > std::size(all.weight))
+    throw nb::value_error("a weight and a rate for each branch");
+  std::copy(weights.begin(), weights.end(), all.weight);
+  std::copy(rates.begin(), rates.end(), all.rate);
+  return all;
+}
+
 /// Remove whole blocks, given by a flag for each node; excavated blocks keep their forces on the
 /// rest until they are released.
 template <auto leave>
@@ -268,6 +278,13 @@ void bind_setup(nb::class_<Core>& core) {
       .def("set_curves", &set_curves)
       .def("set_gravity", &set_gravity)
       .def("set_damping", &set_damping)
+      .def(
+          "set_rock_damping",
+          [](Core& c, Real time, const std::vector<Real>& weights, const std::vector<Real>& rates) {
+            c.model.damping_time = time;
+            c.model.maxwell = branches(weights, rates);
+          },
+          "time"_a, "weights"_a, "rates"_a)
       .def("set_lumped", [](Core& c, bool lumped) { c.model.lumped = lumped; })
       .def("start",
            [](Core& c, Array<Real> position) { init_state(c.model, c.state, position.data()); })
@@ -335,6 +352,15 @@ void bind_run(nb::class_<Core>& core) {
            })
       .def("renew_step", [](Core& c) { renew_step(c.model, c.state); })
       .def("change_mass", [](Core& c, bool lumped) { change_mass(c.model, c.state, lumped); })
+      .def(
+          "change_rock_damping",
+          [](Core& c, Real time, const std::vector<Real>& weights, const std::vector<Real>& rates) {
+            change_damping(c.model, c.state, branches(weights, rates), time);
+          },
+          "time"_a, "weights"_a, "rates"_a)
+      .def(
+          "change_moduli", [](Core& c, Real part) { change_moduli(c.model, c.state, part); },
+          "part"_a)
       .def("move_exact_masses",
            [](Core& c) {  // as if no block had bonds any more
              c.model.lumped_while_bonded = false;
@@ -379,6 +405,20 @@ void bind_diagnostics(nb::class_<Core>& core) {
           },
           "Interface, ratio and place of contacts whose friction falls with the speed.")
       .def("unbalance_ratio", [](const Core& c) { return unbalance_ratio(c.model, c.state); })
+      .def(
+          "stable_step",
+          [](Core& c, const std::vector<Real>& damping, Real time, const std::vector<Real>& weights,
+             const std::vector<Real>& rates, bool lumped) {
+            return stable_step(c.model, c.state,
+                               {.nodes = {damping.at(0), damping.at(1)},
+                                .stiffness = damping.at(2),
+                                .contact = damping.at(3),
+                                .time = time,
+                                .maxwell = branches(weights, rates),
+                                .lumped = lumped});
+          },
+          "damping"_a, "time"_a, "weights"_a, "rates"_a, "lumped"_a,
+          "Stable step with the damping of a stage: local, mass, stiffness, contact; then of rock.")
       .def("step_limit", [](const Core& c) {
         const StepLimit l = step_limit(c.model, c.state);
         return std::make_tuple(l.dt, l.node, l.element_frequency_squared,

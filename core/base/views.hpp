@@ -319,7 +319,17 @@ struct OutForces {
     r[2] = f.z;
     r[3] = 0;
   }
+  CDEM_HD void add(One item, Index corners_per_item, Index corner, const Vec3<Real>& f) const {
+    const Real* r = rows + (std::size_t(item.i) * corners_per_item + corner) * 4;
+    set(item, corners_per_item, corner, Row::at(r).vector() + f);
+  }
 #if !defined(__CUDACC__)
+  void add(Lane item, Index corners_per_item, Index corner, const Vec3<Pack>& f) const {
+    const auto row = [&](Index j) {
+      return rows + (std::size_t(item.i + j) * corners_per_item + corner) * 4;
+    };
+    set(item, corners_per_item, corner, load_rows(row) + f);
+  }
   void set(Lane item, Index corners_per_item, Index corner, const Vec3<Pack>& f) const {
     store_fours({f.x, f.y, f.z, Pack(0.0)}, [&](Index j) {
       return rows + (std::size_t(item.i + j) * corners_per_item + corner) * 4;

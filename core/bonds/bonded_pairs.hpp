@@ -190,9 +190,33 @@ struct ConformingBonds {
     for (Index k = 0; k < count; ++k) jump[k] = pairs.past_rest(p, k, count, frame, jump[k]);
     return frame;
   }
+  /// Rates of the jumps at the bond points  [m/s].
+  template <class I, class T>
+  CDEM_HD void gather_rates(I p, Vec3<T>* rate) const {
+    for (Index k = 0; k < count; ++k)
+      rate[k] = nodes.velocity(pair_nodes.at(count + k, p)) - nodes.velocity(pair_nodes.at(k, p));
+    move_inside<count>(indentation, rate);
+  }
+  /// Mean positions of mated vertices one step ago, from those now.
+  template <class I, class T>
+  CDEM_HD void gather_means_before(I p, Real step, const Vec3<T>* mean, Vec3<T>* before) const {
+    for (Index k = 0; k < count; ++k) {
+      const Vec3<T> both =
+          nodes.velocity(pair_nodes.at(k, p)) + nodes.velocity(pair_nodes.at(count + k, p));
+      before[k] = mean[k] - T(0.5 * step) * both;
+    }
+  }
   template <class I>
   CDEM_HD BondSpring<Number<I>> spring(I p) const {
     return pairs.spring(p, pairs.area.at(0, p) / Number<I>(Real(count)));
+  }
+  /// From forces at the bond points to those on the mates  [N].
+  template <class T>
+  CDEM_HD void move_to_vertices(Vec3<T>* force) const {
+    const T own(1.0 - indentation), shared(indentation / count), zero(0.0);
+    Vec3<T> sum{zero, zero, zero};
+    for (Index k = 0; k < count; ++k) sum = sum + force[k];
+    for (Index k = 0; k < count; ++k) force[k] = own * force[k] + shared * sum;
   }
 
  private:
@@ -253,12 +277,11 @@ struct ConformingBonds {
     add(pairs.broken_shear, p, select(live, total.shear, zero));
   }
   template <class I, class M, class T>
-  CDEM_HD void write_forces(I p, const M& live, const Vec3<T>* force) const {
-    const T own(1.0 - indentation), shared(indentation / count), zero(0.0);
-    Vec3<T> sum{zero, zero, zero};
-    for (Index k = 0; k < count; ++k) sum = sum + force[k];
+  CDEM_HD void write_forces(I p, const M& live, Vec3<T>* force) const {
+    const T zero(0.0);
+    move_to_vertices(force);
     for (Index k = 0; k < count; ++k) {
-      Vec3<T> fk = own * force[k] + shared * sum;
+      Vec3<T> fk = force[k];
       fk = {select(live, fk.x, zero), select(live, fk.y, zero), select(live, fk.z, zero)};
       corner_force.set(p, count, k, fk);
     }
@@ -266,12 +289,6 @@ struct ConformingBonds {
   template <class I>
   CDEM_HD static void add(InOutTable table, I p, Number<I> more) {
     table.set(0, p, table.at(0, p) + more);
-  }
-  template <class I, class T>
-  CDEM_HD void gather_rates(I p, Vec3<T>* rate) const {
-    for (Index k = 0; k < count; ++k)
-      rate[k] = nodes.velocity(pair_nodes.at(count + k, p)) - nodes.velocity(pair_nodes.at(k, p));
-    move_inside<count>(indentation, rate);
   }
 };
 
@@ -300,7 +317,7 @@ struct OverlapBonds {
     for (Index c = point_first[p.i]; c < point_first[p.i + 1]; ++c) {
       const One point{c};
       const Vec3<Real> jump = jump_at(a, b, frame, c);
-      const Vec3<Real> rate = rate_at(b, weights_b, c) - rate_at(a, weights_a, c);
+      const Vec3<Real> rate = rate_of_jump(a, b, c);
       const BondHistory<Real> old = pairs.history_of(point, 0);
       BondHistory<Real> h = old;
       Real state[Laws::most_state + 1];
@@ -336,6 +353,10 @@ struct OverlapBonds {
     return at(b, weights_b, c) - at(a, weights_a, c);
   }
   CDEM_HD Vec3<Real> position(Index a, Index c) const { return at(a, weights_a, c); }
+  /// Rate of the jump at a bond point  [m/s].
+  CDEM_HD Vec3<Real> rate_of_jump(Index a, Index b, Index c) const {
+    return rate_at(b, weights_b, c) - rate_at(a, weights_a, c);
+  }
   CDEM_HD Frame<Real> frame_of(Index a, Index b) const {
     const Frame<Real> f = faces.shape(a).frame();
     const Vec3<Real> n = unit(f.n - faces.shape(b).normal());

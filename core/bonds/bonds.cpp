@@ -2,6 +2,7 @@
 #include "core/bonds/bonds.hpp"
 
 #include "core/base/parallel.hpp"
+#include "core/bonds/bond_dashpots.hpp"
 #include "core/bonds/views.hpp"
 #include "core/model/block_lists.hpp"
 #include "core/model/force_sets.hpp"
@@ -18,25 +19,41 @@ OutForces corner_forces(State& s, const PairSet& p) {
   return {s.corner_force.data() + std::size_t(p.corner_first) * 4};
 }
 
+PairDashpots dashpots(const Model& m, const State& s, const PairSet& p, PairState& ps) {
+  return {.dt = s.dt_last,
+          .per_step = s.dt_last > 0 ? m.damping_time / s.dt_last : 0,
+          .force = {ps.dashpot.data(), p.point_stride},
+          .work = {ps.damping_work.data(), p.stride}};
+}
+
 template <Index count>
 void update_bonds(PairKind<ConformingBonds<count>>, const Model& m, State& s, Queue q,
                   const StepPlan& plan, const PairSet& p, PairState& ps) {
   const Real indentation = count == 3 ? m.bond_indentation_triangle : m.bond_indentation_quad;
-  with_laws(interface_table(m),
-            ConformingBonds<count>{.nodes = {s.nodes.motion.data()},
-                                   .pair_nodes = {p.nodes.data(), p.stride},
-                                   .pairs = pair_columns(m, p, ps),
-                                   .indentation = indentation,
-                                   .dt = s.dt_last,
-                                   .sampled = wants_energy(plan),
-                                   .corner_force = corner_forces(s, p)},
-            [&](const auto& kernel) { for_each_lane(q, p.count, awake(plan, ps.awake), kernel); });
+  const ConformingBonds<count> bonds{.nodes = {s.nodes.motion.data()},
+                                     .pair_nodes = {p.nodes.data(), p.stride},
+                                     .pairs = pair_columns(m, p, ps),
+                                     .indentation = indentation,
+                                     .dt = s.dt_last,
+                                     .sampled = wants_energy(plan),
+                                     .corner_force = corner_forces(s, p)};
+  const Blocks some = awake(plan, ps.awake);
+  with_laws(interface_table(m), bonds,
+            [&](const auto& kernel) { for_each_lane(q, p.count, some, kernel); });
+  if (ps.dashpot.size() > 0)
+    for_each_lane(q, p.count, some,
+                  BondDashpots<count>{.bonds = bonds, .dashpots = dashpots(m, s, p, ps)});
 }
 
 void update_bonds(PairKind<OverlapBonds>, const Model& m, State& s, Queue q, const StepPlan& plan,
                   const PairSet& p, PairState& ps) {
-  with_laws(interface_table(m), overlap_bonds(m, s),
-            [&](const auto& kernel) { for_each_item(q, p.count, awake(plan, ps.awake), kernel); });
+  const Blocks some = awake(plan, ps.awake);
+  const OverlapBonds bonds = overlap_bonds(m, s);
+  with_laws(interface_table(m), bonds,
+            [&](const auto& kernel) { for_each_item(q, p.count, some, kernel); });
+  if (ps.dashpot.size() > 0)
+    for_each_item(q, p.count, some,
+                  OverlapDashpots{.bonds = bonds, .dashpots = dashpots(m, s, p, ps)});
 }
 
 }  // namespace

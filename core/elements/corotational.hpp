@@ -8,57 +8,6 @@
 
 namespace cdem {
 
-/// Rotation of the element at a point from F = R U: the default.
-struct FollowRotation {
-  template <class T>
-  CDEM_HD static Mat3<T> of(const Mat3<T>& f) {
-    return polar_rotation(f);
-  }
-  /// One more step, for large strain.
-  template <class T>
-  CDEM_HD static Mat3<T> nearer(const Mat3<T>& r) {
-    return nearer_rotation(r);
-  }
-};
-
-/// No rotation: F = K u, Feng et al. (2014), Eq. 1. A baseline; it cannot turn at all.
-struct IgnoreRotation {
-  template <class T>
-  CDEM_HD static Mat3<T> of(const Mat3<T>&) {
-    return identity<T>();
-  }
-  template <class T>
-  CDEM_HD static Mat3<T> nearer(const Mat3<T>& r) {
-    return r;
-  }
-};
-
-/// Strain sym(R^T F) - I and rotation R at every Gauss point of one element.
-template <class Shape, class Rotation, class T>
-struct PointStrains {
-  Mat3<T> rotation[Shape::points];
-  Sym3<T> strain[Shape::points];
-  T own_dilatation[Shape::points];  // trace of the strain before the element's mean took its place
-
-  /// `flows`: may the element flow? Its strains may be large, so its rotation takes a step more.
-  template <class I>
-  CDEM_HD PointStrains(const ElementColumns<Shape>& c, I e, bool flows)
-      : PointStrains(c, e, flows, position_arms<Shape>(c, e)) {}
-  /// The same where the nodes are at these arms.
-  template <class I>
-  CDEM_HD PointStrains(const ElementColumns<Shape>& c, I e, bool flows,
-                       const Arms<Shape, T>& arms) {
-    for (Index q = 0; q < Shape::points; ++q) {
-      const Mat3<T> f = gradient_of<Shape>(c, e, q, arms);
-      rotation[q] = Rotation::of(f);
-      if (flows) rotation[q] = Rotation::nearer(rotation[q]);
-      strain[q] = symmetric(transpose(rotation[q]) * f - identity<T>());
-      own_dilatation[q] = trace(strain[q]);
-    }
-    use_mean_dilatation<Shape>(c, e, strain);
-  }
-};
-
 /// Elastic part of the strains.
 template <class Shape, class T>
 struct ElasticStrains {
@@ -270,6 +219,12 @@ struct PointFlow {
   }
 };
 
+/// Elements without damping that remembers the last step, see RockDamping. Their kernels have no
+/// code for it.
+struct NoRockDamping {
+  static constexpr bool any = false;
+};
+
 /// Element forces of the total corotational form.
 ///
 /// With the strain E = sym(R^T F) - I and the elastic stress S(E - Ei) in the unrotated frame, the
@@ -278,8 +233,8 @@ struct PointFlow {
 /// are kept to round-off whatever the rotation. (Written with the current B instead, the force is
 /// no derivative of an energy: it differs by terms of the size of the strain.)
 ///
-/// `damping_time` adds the stress of a Rayleigh dashpot, S(damping_time * rate of E) [s].
-template <class OfShape, class Rotation, class Flow = NoFlow>
+/// `damping_time` adds the stress of a dashpot, S(damping_time * rate of E) [s].
+template <class OfShape, class Rotation, class Flow = NoFlow, class Damping = NoRockDamping>
 struct CorotationalForce {
   using Shape = OfShape;
   ElementColumns<Shape> columns;
@@ -287,6 +242,7 @@ struct CorotationalForce {
   Real dt;                  // [s]
   InOutTable damping_work;  // [1][element]  [J], taken out by the dashpot so far
   Flow flow;                // NoFlow, or PointFlow<Shape>
+  Damping damping{};        // NoRockDamping, or RockDamping<Shape>
 
   static constexpr Fetching fetching{4, 4096};
   /// Not of hexahedra: with their 170 columns of gradients it costs more than it gains.
@@ -304,9 +260,13 @@ struct CorotationalForce {
     const PointStrains<Shape, Rotation, T> p(columns, e, flow.may_flow());
     const auto strains = flow.move_on(columns, e, p);
     CornerForces<Shape, T> force;
-    for (Index q = 0; q < Shape::points; ++q) {
-      const Sym3<T> stress = elastic.stress(strains.of(p, q));
-      force.add(columns, e, q, columns.point_volume.at(q, e) * strains.piola(p, q, stress));
+    if constexpr (Damping::any) {
+      add_damped(e, p, strains, force);
+    } else {
+      for (Index q = 0; q < Shape::points; ++q) {
+        const Sym3<T> stress = elastic.stress(strains.of(p, q));
+        force.add(columns, e, q, columns.point_volume.at(q, e) * strains.piola(p, q, stress));
+      }
     }
     if constexpr (Shape::hourglass)
       Hourglass<T>(columns, e, position_arms<Shape>(columns, e)).add(columns, e, T(1.0), force);
@@ -315,6 +275,18 @@ struct CorotationalForce {
   }
 
  private:
+  /// Forces of the elastic stress and of the damping beside it.
+  template <class I, class T, class Strains>
+  CDEM_HD void add_damped(I e, const PointStrains<Shape, Rotation, T>& p, const Strains& strains,
+                          CornerForces<Shape, T>& force) const {
+    const ElasticConstants<T> elastic = columns.elastic(e);
+    Sym3<T> stress[Shape::points];
+    for (Index q = 0; q < Shape::points; ++q) stress[q] = elastic.stress(strains.of(p, q));
+    const T lost = damping.move_on(columns, e, flow.may_flow(), p, stress, force);
+    for (Index q = 0; q < Shape::points; ++q)
+      force.add(columns, e, q, columns.point_volume.at(q, e) * strains.piola(p, q, stress[q]));
+    damping_work.set(0, e, damping_work.at(0, e) + lost);
+  }
   template <class I, class T>
   CDEM_HD void add_dashpot(I e, const ElasticConstants<T>& elastic,
                            const PointStrains<Shape, Rotation, T>& p,
@@ -345,13 +317,14 @@ struct CorotationalForce {
 
 /// Mean stress and stored energy of an element, for output and the energy ledger. The stress is
 /// that which the next step will compute, the energy that of what has flowed so far.
-template <class Shape, class Rotation, class Flow = PointFlow<Shape>>
+template <class Shape, class Rotation, class Flow = PointFlow<Shape>, class Damping = NoRockDamping>
 struct CorotationalReport {
   ElementColumns<Shape> columns;
   InOutTable stress;   // [6][element]  [Pa], Cauchy (to first order in the strain), global axes
   InOutTable energy;   // [1][element]  [J]
   InOutTable yielded;  // [1][element], see yield_bit; without data where no material flows
   Flow flow;           // PointFlow<Shape>, without history where no material flows, or its like
+  Damping damping{};   // NoRockDamping, or RockDamping<Shape>
 
   template <class I>
   CDEM_HD void operator()(I e) const {
@@ -368,9 +341,12 @@ struct CorotationalReport {
     const T zero(0.0);
     Sym3<T> mean{zero, zero, zero, zero, zero, zero};
     T volume(0.0), stored(0.0);
+    Sym3<T> all[Shape::points];
+    for (Index q = 0; q < Shape::points; ++q) all[q] = elastic.stress(shown.of(p, q));
+    if constexpr (Damping::any) stored += damping.report(columns, e, flow.may_flow(), p, all);
     for (Index q = 0; q < Shape::points; ++q) {
       const T w = columns.point_volume.at(q, e);
-      const Sym3<T> strain = strains.of(p, q), s = elastic.stress(shown.of(p, q));
+      const Sym3<T> strain = strains.of(p, q), s = all[q];
       const Mat3<T>& r = p.rotation[q];
       mean = mean + w * symmetric(r * full(s) * transpose(r));
       volume += w;

@@ -21,14 +21,16 @@ void update_elements(const Model& m, State& s, Queue q, const ElementSet& e, Ele
   const Tiles tiles = tiles_of(e, es, s);
   const InOutTable work{es.damping_work.data(), e.stride}, energy{es.energy.data(), e.stride};
   const InOutTable stress{es.point_stress.data(), e.stride};
-  const Real damping_time = m.stiffness_damping * s.dt;
-  const auto total = [&]<class Rotation, class Flow>(const Flow& flow) {
+  const auto total = [&]<class Rotation, class Flow, class Damping = NoRockDamping>(
+                         const Flow& flow, const Damping& damping = {}) {
     for_each_tile(q, e.count, some, tiles,
-                  CorotationalForce<Shape, Rotation, Flow>{.columns = columns,
-                                                           .damping_time = damping_time,
-                                                           .dt = s.dt,
-                                                           .damping_work = work,
-                                                           .flow = flow});
+                  CorotationalForce<Shape, Rotation, Flow, Damping>{
+                      .columns = columns,
+                      .damping_time = m.stiffness_damping * s.dt,
+                      .dt = s.dt,
+                      .damping_work = work,
+                      .flow = flow,
+                      .damping = damping});
   };
   const auto incremental = [&]<class Turning>() {
     for_each_tile(q, e.count, some, tiles,
@@ -37,6 +39,9 @@ void update_elements(const Model& m, State& s, Queue q, const ElementSet& e, Ele
   };
   switch (m.formulation) {
     case Formulation::corotational:
+      if (remembers(es))
+        return total.template operator()<FollowRotation>(point_flow<Shape>(s, e, es),
+                                                         rock_damping<Shape>(m, s, e, es, false));
       return with_flow<Shape>(
           s, e, es, [&](const auto& flow) { total.template operator()<FollowRotation>(flow); });
     case Formulation::paper_total:  // a case with a law that flows does not have it

@@ -132,16 +132,23 @@ void update_averaged_tets(const Model& m, State& s, Queue q) {
   const NodalFlow flow{.flow = flow_of_tets(m, s),
                        .after = dilatation(m, s, s.nodal.after),
                        .flowed = {s.nodal.flowed.data(), e.stride}};
-  for_each_tile(q, e.count, averaged_tets(s), tiles_of(e, s.tet4, s),
-                CorotationalForce<Tet4, FollowRotation, NodalFlow>{
-                    .columns = element_columns<Tet4>(m, s, e),
-                    .damping_time = m.stiffness_damping * s.dt,
-                    .dt = s.dt,
-                    .damping_work = {s.tet4.damping_work.data(), e.stride},
-                    .flow = flow});
+  const auto update = [&]<class Damping>(const Damping& damping) {
+    for_each_tile(q, e.count, averaged_tets(s), tiles_of(e, s.tet4, s),
+                  CorotationalForce<Tet4, FollowRotation, NodalFlow, Damping>{
+                      .columns = element_columns<Tet4>(m, s, e),
+                      .damping_time = m.stiffness_damping * s.dt,
+                      .dt = s.dt,
+                      .damping_work = {s.tet4.damping_work.data(), e.stride},
+                      .flow = flow,
+                      .damping = damping});
+  };
+  if (remembers(s.tet4))
+    update(rock_damping<Tet4>(m, s, e, s.tet4, false));
+  else
+    update(NoRockDamping{});
 }
 
-bool report_averaged_tets(const Model& m, State& s, Queue q) {
+bool report_averaged_tets(const Model& m, State& s, Queue q, bool ahead) {
   if (s.nodal.after.size() == 0) return false;
   find_dilatation(m, s, q);
   average(m, s, q, s.nodal.trial);
@@ -149,13 +156,20 @@ bool report_averaged_tets(const Model& m, State& s, Queue q) {
   const NodalReport flow{.flow = flow_of_tets(m, s),
                          .now = dilatation(m, s, s.nodal.trial),
                          .own = {s.nodal.own.data(), e.stride}};
-  for_each_lane(q, e.count, averaged_tets(s),
-                CorotationalReport<Tet4, FollowRotation, NodalReport>{
-                    .columns = element_columns<Tet4>(m, s, e),
-                    .stress = {s.tet4.stress.data(), e.stride},
-                    .energy = {s.tet4.energy.data(), e.stride},
-                    .yielded = {s.tet4.yielded.data(), e.stride},
-                    .flow = flow});
+  const auto report = [&]<class Damping>(const Damping& damping) {
+    for_each_lane(q, e.count, averaged_tets(s),
+                  CorotationalReport<Tet4, FollowRotation, NodalReport, Damping>{
+                      .columns = element_columns<Tet4>(m, s, e),
+                      .stress = {s.tet4.stress.data(), e.stride},
+                      .energy = {s.tet4.energy.data(), e.stride},
+                      .yielded = {s.tet4.yielded.data(), e.stride},
+                      .flow = flow,
+                      .damping = damping});
+  };
+  if (remembers(s.tet4))
+    report(rock_damping<Tet4>(m, s, e, s.tet4, ahead));
+  else
+    report(NoRockDamping{});
   return true;
 }
 

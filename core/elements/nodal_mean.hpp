@@ -21,8 +21,8 @@ void update_nodal_means(const Model& model, State& state, Queue queue);
 void update_averaged_tets(const Model& model, State& state, Queue queue);
 
 /// Stress and energy of these tets where the nodes are now. Returns false where no step has begun
-/// yet: they are as other tets then.
-bool report_averaged_tets(const Model& model, State& state, Queue queue);
+/// yet: they are as other tets then. `ahead`: see report_elements.
+bool report_averaged_tets(const Model& model, State& state, Queue queue, bool ahead);
 
 /// Blocks of tets without an averaged one.
 Blocks other_tets(const State& state);

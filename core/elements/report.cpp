@@ -2,6 +2,7 @@
 #include "core/elements/report.hpp"
 
 #include <algorithm>
+#include <type_traits>
 #include <vector>
 
 #include "core/base/parallel.hpp"
@@ -15,15 +16,22 @@ namespace cdem {
 namespace {
 
 template <class Shape, class Rotation>
-void report_set(const Model& m, State& s, Queue q, const ElementSet& e, ElementState& es) {
-  const bool averaged = e.nodal_mean.size() > 0 && report_averaged_tets(m, s, q);
-  for_each_lane(q, e.count, averaged ? other_tets(s) : Blocks{},
-                CorotationalReport<Shape, Rotation>{
-                    .columns = element_columns<Shape>(m, s, e),
-                    .stress = {es.stress.data(), e.stride},
-                    .energy = {es.energy.data(), e.stride},
-                    .yielded = {es.yielded.size() > 0 ? es.yielded.data() : nullptr, e.stride},
-                    .flow = point_flow<Shape>(s, e, es)});
+void report_set(const Model& m, State& s, Queue q, const ElementSet& e, ElementState& es,
+                bool ahead) {
+  const bool averaged = e.nodal_mean.size() > 0 && report_averaged_tets(m, s, q, ahead);
+  const auto report = [&]<class Damping>(const Damping& damping) {
+    for_each_lane(q, e.count, averaged ? other_tets(s) : Blocks{},
+                  CorotationalReport<Shape, Rotation, PointFlow<Shape>, Damping>{
+                      .columns = element_columns<Shape>(m, s, e),
+                      .stress = {es.stress.data(), e.stride},
+                      .energy = {es.energy.data(), e.stride},
+                      .yielded = {es.yielded.size() > 0 ? es.yielded.data() : nullptr, e.stride},
+                      .flow = point_flow<Shape>(s, e, es),
+                      .damping = damping});
+  };
+  if constexpr (std::is_same_v<Rotation, FollowRotation>)
+    if (remembers(es)) return report(rock_damping<Shape>(m, s, e, es, ahead));
+  report(NoRockDamping{});
 }
 
 /// Mean over the Gauss points of the stress that the incremental forms keep.
@@ -44,12 +52,13 @@ void average_points(const ElementSet& e, ElementState& es) {
 }
 
 template <class Shape>
-void report_shape(const Model& m, State& s, Queue q, const ElementSet& e, ElementState& es) {
+void report_shape(const Model& m, State& s, Queue q, const ElementSet& e, ElementState& es,
+                  bool ahead) {
   switch (m.formulation) {
     case Formulation::corotational:
-      return report_set<Shape, FollowRotation>(m, s, q, e, es);
+      return report_set<Shape, FollowRotation>(m, s, q, e, es, ahead);
     case Formulation::paper_total:
-      return report_set<Shape, IgnoreRotation>(m, s, q, e, es);
+      return report_set<Shape, IgnoreRotation>(m, s, q, e, es, ahead);
     default:
       return average_points<Shape>(e, es);
   }
@@ -57,11 +66,10 @@ void report_shape(const Model& m, State& s, Queue q, const ElementSet& e, Elemen
 
 }  // namespace
 
-/// Stress and strain energy of every element where the nodes are now.
-void report_elements(const Model& m, State& s, Queue q) {
+void report_elements(const Model& m, State& s, Queue q, bool ahead) {
   for_each_element_set(m, s,
                        [&]<class Shape>(ElementKind<Shape>, const ElementSet& e, ElementState& es) {
-                         report_shape<Shape>(m, s, q, e, es);
+                         report_shape<Shape>(m, s, q, e, es, ahead);
                        });
   finish(q);
 }
@@ -72,7 +80,7 @@ void report_stress(const Model& m, State& s) {
   for_each_element_set(m, s, [&](auto, const ElementSet&, const ElementState& es) {
     energy.push_back(fetch(es.energy));
   });
-  report_elements(m, s, {});
+  report_elements(m, s, {}, true);
   auto before = energy.begin();
   for_each_element_set(
       m, s, [&](auto, const ElementSet&, ElementState& es) { es.energy.assign(*before++); });

@@ -7,8 +7,9 @@
 
 namespace cdem {
 
-/// Stress and strain energy of every element where the nodes are now.
-void report_elements(const Model& model, State& state, Queue queue);
+/// Stress and strain energy of every element where the nodes are now. `ahead`: have the nodes moved
+/// since the damping of rock has?
+void report_elements(const Model& model, State& state, Queue queue, bool ahead = false);
 
 /// Stress of every element at present positions; energies stay as at the last sampled step.
 void report_stress(const Model& model, State& state);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/elements/corotational.hpp"
+#include "core/elements/rock_damping.hpp"
 #include "core/elements/tiles.hpp"
 #include "core/model/model.hpp"
 #include "core/model/state.hpp"
@@ -21,6 +22,32 @@ ElementColumns<Shape> element_columns(const Model& m, const State& s, const Elem
                         .parameters = m.material_parameters.data()},
           .hourglass = {e.hourglass.data(), e.stride}};
 }
+
+/// What the damping of rock remembers of a set, which has some.
+///
+/// Args:
+///   ahead: Is the state that of one step ago?
+template <class Shape>
+RockDamping<Shape> rock_damping(const Model& m, const State& s, const ElementSet& e,
+                                ElementState& es, bool ahead) {
+  const Real dt = s.dt_last;
+  RockDamping<Shape> damping{
+      .branch = {es.branch.size() > 0 ? es.branch.data() : nullptr, e.stride},
+      .dashpot = {es.dashpot.size() > 0 ? es.dashpot.data() : nullptr, e.stride},
+      .ahead = ahead,
+      .dt = dt,
+      .per_step = dt > 0 ? m.damping_time / dt : 0};
+  for (Index j = 0; j < MaxwellBranches::count; ++j) {
+    const Real rate = m.maxwell.rate[j] * dt;
+    damping.weight[j] = m.maxwell.weight[j];
+    damping.left[j] = exp_of(-rate);
+    damping.share[j] = rate > 0 ? (1 - damping.left[j]) / rate : 1;
+  }
+  return damping;
+}
+
+/// Do the elements of a set remember anything for their damping?
+inline bool remembers(const ElementState& es) { return es.branch.size() + es.dashpot.size() > 0; }
 
 /// Tiles of a set.
 inline Tiles tiles_of(const ElementSet& e, const ElementState& es, State& s) {

@@ -1,6 +1,6 @@
 // bonds.cpp - the loops over kernels of this stage, instantiated. Compiled as C++, and as CUDA.
 #include "core/base/primitive_loops.hpp"
-#include "core/bonds/bonded_pairs.hpp"
+#include "core/bonds/bond_dashpots.hpp"
 #include "core/bonds/broken_pairs.hpp"
 
 namespace cdem {
@@ -9,6 +9,9 @@ template bool any_item(Queue, Index, const HasJumped&);
 template bool any_item(Queue, Index, const HasMovedFar&);
 template void select_items(Queue, Index, const HasMovedFar&, Column<Index>&);
 template void select_items(Queue, Index, const HoldsInPart&, Column<Index>&);
+template void for_each_lane(Queue, Index, Blocks, const BondDashpots<3>&);
+template void for_each_lane(Queue, Index, Blocks, const BondDashpots<4>&);
+template void for_each_item(Queue, Index, Blocks, const OverlapDashpots&);
 template void for_each_lane(Queue, Index, Blocks,
                             const WithLaws<ConformingBonds<3>, BrittleAlone>&);
 template void for_each_lane(Queue, Index, Blocks,

@@ -84,6 +84,37 @@ void describe_fused(const char* rows, FusedBlocks& fused, Rebuilt&& rebuilt) {
           fused.row);
 }
 
+/// Damping of the rock of a set: part of `describe_state`.
+template <class Stored>
+void describe_damping(const char* rows, const ElementSet& set, ElementState& e, Stored&& stored) {
+  const std::string name = std::string(rows) + ".";
+  stored({.name = name + "damping_work",
+          .unit = "J",
+          .meaning = "work of dashpots and Maxwell branches",
+          .rows = rows,
+          .layout = Layout::columns},
+         e.damping_work);
+  stored({.name = name + "branch",
+          .meaning = "strains of the springs of Maxwell branches at the Gauss points",
+          .rows = rows,
+          .numbers = 6 * MaxwellBranches::count * set.points,
+          .layout = Layout::columns,
+          .optional = true},
+         e.branch);
+  const Index modes = set.hourglass.size() > 0 ? 12 : 0;
+  stored(
+      {.name = name + "dashpot",
+       .unit = "Pa, m/s",
+       .meaning = "stress of Rayleigh dashpots at the Gauss points in the last step, then rates of "
+                  "hourglass modes",
+       .rows = rows,
+       .numbers = 6 * set.points + modes,
+       .parts = {{"stress", 6 * set.points}, {"modes", modes}},
+       .layout = Layout::columns,
+       .optional = true},
+      e.dashpot);
+}
+
 /// One set of elements: part of `describe_state`.
 template <class Stored, class Rebuilt>
 void describe_set(const char* rows, const ElementSet& set, ElementState& e, Stored&& stored,
@@ -103,12 +134,7 @@ void describe_set(const char* rows, const ElementSet& set, ElementState& e, Stor
           .rows = rows,
           .layout = Layout::columns},
          e.energy);
-  stored({.name = name + "damping_work",
-          .unit = "J",
-          .meaning = "work of the stiffness dashpot",
-          .rows = rows,
-          .layout = Layout::columns},
-         e.damping_work);
+  describe_damping(rows, set, e, stored);
   stored({.name = name + "history",
           .unit = "1, and of the law",
           .meaning = "inelastic strain and state of the law at the Gauss points",

@@ -433,13 +433,13 @@ void describe_model(Model& m, State& s, Visit&& visit) {
          .unit = "Pa",
          .meaning = "first Lame constant",
          .rows = "materials",
-         .changes = Changes::with_places},
+         .changes = Changes::with_stage},
         m.material_lambda);
   given({.name = "material.mu",
          .unit = "Pa",
          .meaning = "shear modulus",
          .rows = "materials",
-         .changes = Changes::with_places},
+         .changes = Changes::with_stage},
         m.material_mu);
   given({.name = "material.law",
          .meaning = "number of the block law",

@@ -20,7 +20,8 @@ void describe_set(const char* rows, const PairSet& set, PairState& p, Stored&& s
             .unit = unit,
             .meaning = meaning,
             .rows = rows,
-            .layout = Layout::columns},
+            .layout = Layout::columns,
+            .optional = &numbers == &p.damping_work},
            numbers);
   };
   const auto of_point = [&](const char* column, const char* unit, const char* meaning,
@@ -31,7 +32,7 @@ void describe_set(const char* rows, const PairSet& set, PairState& p, Stored&& s
             .rows = conforms(set) ? rows : "overlap_points",
             .numbers = axes * set.points,
             .layout = Layout::columns,
-            .optional = &numbers == &p.rest || &numbers == &p.rise},
+            .optional = &numbers == &p.rest || &numbers == &p.rise || &numbers == &p.dashpot},
            numbers);
   };
   stored({.name = name + "status",
@@ -58,6 +59,9 @@ void describe_set(const char* rows, const PairSet& set, PairState& p, Stored&& s
   of_pair("stored", "J", "elastic energy", p.stored);
   of_pair("fracture", "J", "energy of fracture", p.fracture);
   of_pair("friction", "J", "frictional work", p.friction);
+  of_point("dashpot", "N", "force of the dashpot along the axes of the pair in the last step",
+           p.dashpot, 3);
+  of_pair("damping_work", "J", "work of the dashpots", p.damping_work);
   rebuilt("find_awake",
           {.name = name + "awake",
            .meaning = "blocks of pairs that are computed",

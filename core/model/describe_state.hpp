@@ -29,6 +29,10 @@ void describe_state(const Model& m, State& s, Stored&& stored, Rebuilt&& rebuilt
     describe_tiles(kind.name, e, es.tiles, rebuilt);
   });
   describe_nodal_means(s.nodal, stored, rebuilt);
+  stored({.name = "rock.moduli",
+          .meaning = "moduli of the rock over those of its materials, where they differ",
+          .optional = true},
+         s.moduli);
   rebuilt("update_element_forces",
           {.name = "tile.force",
            .unit = "N, -",

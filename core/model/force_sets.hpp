@@ -196,6 +196,7 @@ void for_each_energy(const PairState& s, Visit&& visit) {
   visit(energy_term("contact"), s.stored);
   visit(energy_term("friction"), s.friction);
   visit(energy_term("fracture"), s.fracture);
+  visit(energy_term("damping"), s.damping_work);
 }
 template <ModuleData S, class Visit>
 void for_each_energy(const S& s, Visit&& visit) {

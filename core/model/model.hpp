@@ -106,7 +106,9 @@ struct Model {
   bool lumped = false;               // lumped masses for all: quicker to rest, wrong inertia
   bool lumped_while_bonded = false;  // lumped masses for blocks with bonds, see list_lumped
   Real stiffness_damping = 0;        // Rayleigh, fraction of critical at the stability limit
-  Real contact_damping = 0;          // fraction of critical
+  Real damping_time = 0;             // Rayleigh, of elements and of bonds that hold  [s]
+  MaxwellBranches maxwell;
+  Real contact_damping = 0;  // fraction of critical
   Real step_safety = 0.8;
   Real step_given = 0;   // 0: automatic
   Real speed_limit = 0;  // faster than this the run has gone wrong  [m/s]

@@ -68,10 +68,11 @@ struct ElementState {
   Column<Real> stress;        // mean, for output: [6][element]
   Column<Real> point_stress;  // incremental formulations: [point * 6][element]
   Column<Real> energy, damping_work;
-  Column<Real> history;       // [point * point_history][element], see PointFlow; may be empty
-  Column<Real> plastic_work;  // empty where no material of the set flows
-  Column<Real> yielded;       // for output, see yield_bit; empty where plastic_work is
-  Column<Index> awake;        // blocks of elements, see nodes/sleep.hpp
+  Column<Real> branch, dashpot;  // see RockDamping; empty where a stage does not damp so
+  Column<Real> history;          // [point * point_history][element], see PointFlow; may be empty
+  Column<Real> plastic_work;     // empty where no material of the set flows
+  Column<Real> yielded;          // for output, see yield_bit; empty where plastic_work is
+  Column<Index> awake;           // blocks of elements, see nodes/sleep.hpp
   FusedBlocks fused;
 };
 
@@ -99,8 +100,9 @@ struct PairState {
   Column<Real> rest;  // [axis * points + point][pair], see PairColumns; empty: all zero
   Column<Real> rise;  // [point][pair] the same
   Column<Real> stored, fracture, friction;
-  Column<Real> history;  // [variable * points + point][pair], of the pair's law
-  Column<Index> awake;   // blocks of pairs, see nodes/sleep.hpp
+  Column<Real> dashpot, damping_work;  // see BondDashpots; empty where a stage does not damp so
+  Column<Real> history;                // [variable * points + point][pair], of the pair's law
+  Column<Index> awake;                 // blocks of pairs, see nodes/sleep.hpp
 };
 
 struct SpringState {
@@ -231,6 +233,7 @@ struct State {
   GroundState ground;
   ElementState tet4, pyramid5, wedge6, hex8;
   NodalMeans nodal;
+  Column<Real> moduli;  // of the rock over those of its materials; empty: the same
   PairState triangles, quads, overlaps;
   Modules::Data<StatePart> modules;
   Column<Index> released_overlaps;  // their contacts are still to be found in this step

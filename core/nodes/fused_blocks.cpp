@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/base/parallel.hpp"
+#include "core/elements/change_damping.hpp"
 #include "core/elements/views.hpp"
 #include "core/model/force_sets.hpp"
 #include "core/nodes/fused_block.hpp"
@@ -123,7 +124,8 @@ void find_fused_elements(const Model& m, State& s, const ElementSet& e, ElementS
 void find_fused_blocks(const Model& m, State& s) {
   NodeState& nodes = s.nodes;
   nodes.fused.resize(0);
-  if (s.nodes.relax_mass.size() > 0 || m.formulation != Formulation::corotational) return;
+  if (s.nodes.relax_mass.size() > 0 || m.formulation != Formulation::corotational || damps_rock(m))
+    return;
   for_each_element_set(m, s,
                        [&]<class Shape>(ElementKind<Shape>, const ElementSet& e, ElementState& es) {
                          with_flow<Shape>(s, e, es, [&]<class Flow>(const Flow&) {

@@ -25,7 +25,8 @@ struct NodeFrequency {
   const Real* lumped_frequency_squared;  // [node]
   const Real* force;                     // rows of 4
   const Real *potential, *bonds;         // stiffness that contacts may have, bonds have  [N/m]
-  bool held;  // do nodes count that are held or driven in all directions?
+  Real stiffer;  // moduli of the elements in fast motion over those of slow loading
+  bool held;     // do nodes count that are held or driven in all directions?
 
   CDEM_HD Real operator()(One node) const {
     const Frequency all = of(node.i);
@@ -44,8 +45,8 @@ struct NodeFrequency {
         stiffness = here;
         all.stiffest = j;
       }
-      all.element = max_of(mass.is_lumped(j) ? lumped_frequency_squared[j] : frequency_squared[j],
-                           all.element);
+      const Real own = mass.is_lumped(j) ? lumped_frequency_squared[j] : frequency_squared[j];
+      all.element = max_of(stiffer * own, all.element);
     }
     // Gershgorin: a spring between two points adds at most twice its stiffness to a row
     all.contact = 2 * stiffness * (mass.is_lumped(i) ? 1 / model_mass[i] : inverse_mass_bound[i]);
@@ -73,7 +74,7 @@ struct NodeFrequency {
     Real largest = 0;
     for (Index j = block.first; j < block.last; ++j) {
       if (is_held(j)) continue;
-      const Real elements = model_mass[j] * lumped_frequency_squared[j];
+      const Real elements = stiffer * model_mass[j] * lumped_frequency_squared[j];
       largest = max_of((elements + 2 * stiffness_at(j)) / least_mass[j], largest);
     }
     return largest < bound ? largest / bound : 1;

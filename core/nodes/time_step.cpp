@@ -36,6 +36,7 @@ NodeFrequency node_frequency(const Model& m, const State& s, bool held) {
           .force = s.nodes.force.data(),
           .potential = s.node_potential.data(),
           .bonds = s.node_bonds.data(),
+          .stiffer = m.maxwell.stiffer(),
           .held = held};
 }
 
@@ -68,11 +69,34 @@ StepLimit step_limit(const Model& m, const State& s) {
       largest = std::max(largest, Module::frequency_squared(given_of<Module>(m)));
   });
   // a dashpot of ratio xi at the highest frequency shortens the stable step by this factor
-  const Real xi =
-      m.stiffness_damping + m.contact_damping + 0.5 * m.damping.mass / std::sqrt(largest);
+  const Real rayleigh =
+      0.5 * (m.damping.mass / std::sqrt(largest) + m.damping_time * std::sqrt(largest));
+  const Real xi = m.stiffness_damping + m.contact_damping + rayleigh;
   limit.dt = 2 / std::sqrt(largest) * damped(xi) / std::sqrt(1 + m.damping.local) *
              strongly_damped(m.contact_damping);
   return limit;
+}
+
+Real stable_step(Model& m, const State& s, const StageDamping& damping) {
+  const auto exchange = [&m](const StageDamping& d) {
+    const StageDamping was{.nodes = m.damping,
+                           .stiffness = m.stiffness_damping,
+                           .contact = m.contact_damping,
+                           .time = m.damping_time,
+                           .maxwell = m.maxwell,
+                           .lumped = m.lumped};
+    m.damping = d.nodes;
+    m.stiffness_damping = d.stiffness;
+    m.contact_damping = d.contact;
+    m.damping_time = d.time;
+    m.maxwell = d.maxwell;
+    m.lumped = d.lumped;
+    return was;
+  };
+  const StageDamping own = exchange(damping);
+  const Real dt = step_limit(m, s).dt;
+  exchange(own);
+  return dt;
 }
 
 void renew_step(const Model& m, State& s) {

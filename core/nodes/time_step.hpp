@@ -44,6 +44,17 @@ inline constexpr Real sure_contact_damping = 0.1;
 
 StepLimit step_limit(const Model& model, const State& state);
 
+/// Damping of a stage.
+struct StageDamping {
+  NodeDamping nodes;
+  Real stiffness = 0, contact = 0, time = 0;  // see Model
+  MaxwellBranches maxwell;
+  bool lumped = false;
+};
+
+/// Stable step with the damping of a stage, before the safety factor  [s]. The model stays as it is.
+Real stable_step(Model& model, const State& state, const StageDamping& damping);
+
 /// Find the stable step; the coming step shrinks to it at once and grows slowly.
 void renew_step(const Model& model, State& state);
 

@@ -22,6 +22,18 @@ struct SearchRules {
   Real lifted = 0;  // [m] gap up to which contacts that have dilated are kept, at most
 };
 
+/// Maxwell branches beside the elastic rock, see elements/rock_damping.hpp; without weight there
+/// are none.
+struct MaxwellBranches {
+  static constexpr Index count = 3;
+  Real weight[count] = {};  // moduli over those of the rock  [1]
+  Real rate[count] = {};    // at which their stresses relax  [1/s]
+
+  bool any() const { return weight[0] + weight[1] + weight[2] > 0; }
+  /// Moduli in fast motion over those of slow loading.
+  Real stiffer() const { return 1 + weight[0] + weight[1] + weight[2]; }
+};
+
 /// Damping of the nodes' motion.
 struct NodeDamping {
   Real local;  // Cundall's, fraction of the unbalanced force, against the velocity

@@ -29,9 +29,13 @@ constexpr Real part_of_round = 1e-3;  // to which a round brings the residual of
 class NoDamping {
  public:
   explicit NoDamping(Model& m, State& s)
-      : model_(m), nodes_(m.damping), elements_(m.stiffness_damping), contacts_(m.contact_damping) {
+      : model_(m),
+        nodes_(m.damping),
+        elements_(m.stiffness_damping),
+        time_(m.damping_time),
+        contacts_(m.contact_damping) {
     m.damping = {0, 0};
-    m.stiffness_damping = m.contact_damping = 0;
+    m.stiffness_damping = m.damping_time = m.contact_damping = 0;
     s.relax_damping = 0;
   }
   NoDamping(const NoDamping&) = delete;
@@ -39,13 +43,14 @@ class NoDamping {
   ~NoDamping() {
     model_.damping = nodes_;
     model_.stiffness_damping = elements_;
+    model_.damping_time = time_;
     model_.contact_damping = contacts_;
   }
 
  private:
   Model& model_;
   NodeDamping nodes_;
-  Real elements_, contacts_;
+  Real elements_, time_, contacts_;
 };
 
 /// The true forces where the nodes are now, and their sums. Returns the unbalance.

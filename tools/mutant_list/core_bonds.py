@@ -117,4 +117,20 @@ FAULTS = [
         "",
         "tests/core/bonds/test_bond_point.cpp",
     ),
+    Mutant(
+        "broken dashpot",
+        "dashpots of bonds that have broken",
+        "core/bonds/bond_dashpots.hpp",
+        "const auto holds = bonds.pairs.bond.at(k, p) > T(0.5);",
+        "const auto holds = bonds.pairs.bond.at(k, p) > T(-0.5);",
+        "tests/core/bonds/test_bond_dashpots.cpp",
+    ),
+    Mutant(
+        "bond dashpot",
+        "dashpots of bonds as stiff across as along",
+        "core/bonds/bond_dashpots.hpp",
+        "Vec3<T> own{scale * stiff.n * change.x,",
+        "Vec3<T> own{scale * stiff.s * change.x,",
+        "tests/core/bonds/test_bond_dashpots.cpp",
+    ),
 ]

@@ -156,4 +156,20 @@ FAULTS = [
         "if (count < 0) std::fill",
         "tests/core/nodes/test_sleep.cpp",
     ),
+    Mutant(
+        "branches in the step",
+        "a step that knows nothing of Maxwell branches",
+        "core/nodes/node_frequency.hpp",
+        "all.element = max_of(stiffer * own, all.element);",
+        "all.element = max_of(own, all.element);",
+        "tests/core/nodes/test_time_step.cpp",
+    ),
+    Mutant(
+        "rayleigh in the step",
+        "a step that knows nothing of Rayleigh's stiffness part",
+        "core/nodes/time_step.cpp",
+        "m.damping_time * std::sqrt(largest)",
+        "0",
+        "tests/core/nodes/test_time_step.cpp",
+    ),
 ]

@@ -47,8 +47,8 @@ FAULTS = [
         "made up",
         "elements make up for bonds in E but not in Poisson's ratio",
         "src/cdem/model/flat_arrays.py",
-        "return lame_constants(e * self.young_modulus, e * self.poisson_ratio)",
-        "return lame_constants(e * self.young_modulus, self.poisson_ratio)",
+        "lame_constants(e * self.young_modulus, e * self.poisson_ratio)",
+        "lame_constants(e * self.young_modulus, self.poisson_ratio)",
         "tests/validation/test_compensated_rock.py",
     ),
     Mutant(
@@ -234,5 +234,13 @@ FAULTS = [
         "return paired & (cells[:, None] | cells)",
         "return paired & (cells[:, None] & cells)",
         "tests/unit/model/test_assemble.py",
+    ),
+    Mutant(
+        "rayleigh stiffness",
+        "twice Rayleigh's factor of the stiffness",
+        "src/cdem/model/damping.py",
+        'rayleigh.ratio / w if rayleigh.part == "both" else 0.0',
+        '2 * rayleigh.ratio / w if rayleigh.part == "both" else 0.0',
+        "tests/unit/model/test_damping.py",
     ),
 ]

@@ -108,4 +108,13 @@ FAULTS = [
         "if value > 10 * limit:",
         "tests/validation/test_block_laws.py::test_large_strain_is_told_and_ends_a_run",
     ),
+    Mutant(
+        "moduli of a stage",
+        "moduli of a reference frequency without the stress that stays",
+        "src/cdem/run/stages.py",
+        "        sim.core.change_moduli(now)\n",
+        "        pass\n",
+        "tests/validation/test_damping.py::"
+        "test_damping_that_comes_and_goes_keeps_stress_and_energy",
+    ),
 ]

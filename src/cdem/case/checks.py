@@ -64,6 +64,7 @@ def _names(case: CaseParts) -> Iterator[Problem]:
     yield from _bolts(case)
     yield from _surfaces(case)
     yield from boundary_problems(case)
+    yield from _rock_damping(case)
     yield from _curves(case)
     yield from record_contradictions(case)
     yield from _joints(case)
@@ -91,6 +92,26 @@ def _surfaces(case: CaseParts) -> Iterator[Problem]:
     for i, history in enumerate(case.histories):
         if "surface_force" in history.quantities and not case.surface_entries:
             yield ("histories", i, "quantities"), "surface_force needs loads.surfaces in the case"
+
+
+def _rock_damping(case: CaseParts) -> Iterator[Problem]:
+    """Check that the elements have the dashpots and branches that a stage asks for."""
+    way = case.elements.formulation
+    if way == "corotational":
+        return
+    for i, stage in enumerate(case.stages):
+        keys = ("stages", i, "damping")
+        if stage.damping.maxwell is not None:
+            yield (
+                (*keys, "maxwell"),
+                f"needs elements.formulation: corotational, got {way}",
+            )
+        elif stage.damping.rayleigh is not None and stage.damping.rayleigh.part == "both":
+            yield (
+                (*keys, "rayleigh"),
+                f"damps stiffness only with elements.formulation: corotational, got {way}; or write "
+                "part: mass",
+            )
 
 
 def _water(case: CaseParts) -> Iterator[Problem]:

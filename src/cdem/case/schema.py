@@ -10,6 +10,7 @@ from pydantic import Discriminator, Field, PrivateAttr, Tag, model_validator
 from cdem.case.bodies_schema import Model, exactly_one
 from cdem.case.bolts_schema import Bolts, BoltType
 from cdem.case.boundaries_schema import Boundary
+from cdem.case.damping_schema import Maxwell, Rayleigh
 from cdem.case.interface_schema import Interfaces
 from cdem.case.laws import BLOCK_LAWS, choice, models
 from cdem.case.loads_schema import Axes, Loads
@@ -105,6 +106,23 @@ class Damping(Part):
         "for a given coefficient use restitution of the interface. Default 0.1 in a dynamic stage, 0 in "
         "a static one",
     )
+    rayleigh: Rayleigh | None = Field(
+        None, description="Dynamic only: Rayleigh damping of the rock, with a ratio at a frequency"
+    )
+    maxwell: Maxwell | None = Field(
+        None, description="Dynamic only: damping of the rock with a ratio that is flat over a band"
+    )
+
+    @model_validator(mode="after")
+    def _one_of_a_kind(self) -> Damping:
+        if self.rayleigh and self.maxwell:
+            raise ValueError("rayleigh and maxwell would add up: give one of them")
+        others = [key for key in ("mass", "stiffness") if getattr(self, key) > 0]
+        if self.rayleigh and others:
+            raise ValueError(
+                f"rayleigh gives the factors of mass and stiffness: remove {' and '.join(others)}"
+            )
+        return self
 
 
 class Release(Part):
@@ -173,6 +191,9 @@ class Stage(Part):
         for field in wrong:
             if getattr(self, field) is not None:
                 raise ValueError(f"{field} has no effect in a {self.mode} stage; remove it")
+        for field in ("rayleigh", "maxwell"):
+            if self.mode == "static" and getattr(self.damping, field) is not None:
+                raise ValueError(f"damping.{field} has no effect in a static stage; remove it")
         if self.release is not None and self.mode == "static" and self.release.over is not None:
             raise ValueError("release.over has no effect in a static stage; write parts")
         if self.release is not None and self.mode == "dynamic" and self.release.parts > 1:

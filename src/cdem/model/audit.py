@@ -18,6 +18,7 @@ from cdem.mesh.element_shapes import NODES, SLIVER
 from cdem.model.build import Build
 from cdem.model.compliance import bonded_interfaces, coarse_beams
 from cdem.model.contact_overlaps import contact_interfaces
+from cdem.model.damping_report import rock_dampings
 from cdem.model.disc_areas import disc_areas, disc_lines, weak_bridges
 from cdem.model.held import unheld_blocks
 from cdem.model.meshed_strength import meshed_strengths, strength_text
@@ -69,6 +70,7 @@ class Audit:
         self.discs = disc_areas(build)
         self.modules = {name: module.report(build) for name, module in build.modules.items()}
         self.step = self._step()
+        self.damping = rock_dampings(build, self.interfaces)
         self.warnings = self._warnings()
 
     # ------------------------------------------------------------------ parts
@@ -273,6 +275,7 @@ class Audit:
             "initial_stress": self._build.initial.as_dict() if self._build.initial else None,
             "time_step": self.step,
             "records": {name: self._record(name) for name in self._build.case.records},
+            "damping": [one.as_dict() for one in self.damping],
             "memory_bytes": self.memory,
             "warnings": self.warnings,
         }
@@ -314,12 +317,17 @@ class Audit:
             "",
             f"  time step {s['dt']:.4g} s, stable below {s['limit']:.4g} s; {s['words']} rule it",
             *([f"    {s['remedy']}"] if s["remedy"] else []),
+            *self._damping_text(),
             f"  memory of model and state {self.memory / 1e6:,.0f} MB",
         ]
         if estimate:
             lines.append(estimate.rstrip())
         lines += [""] + [f"  warning: {w}" for w in self.warnings]
         return "\n".join(lines).rstrip() + "\n"
+
+    def _damping_text(self) -> list[str]:
+        """Lines on the damping of rock in each stage."""
+        return [line for one in self.damping for line in one.lines()]
 
     def _interfaces_text(self) -> list[str]:
         """Lines on pairs of faces that are bonded, or that begin broken."""

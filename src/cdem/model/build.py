@@ -91,6 +91,7 @@ class Build:
         initial: Initial stress of the rock, or None.
         modules: Modules by name.
         boundaries: Quiet and driven boundaries.
+        moduli: Moduli of the rock over those of its materials in the present stage.
     """
 
     case: Case
@@ -106,6 +107,7 @@ class Build:
     initial: InitialState | None
     modules: dict[str, Module]
     boundaries: Boundaries
+    moduli: float = 1.0
 
     def __post_init__(self) -> None:
         self.born = self.start_position
@@ -254,11 +256,10 @@ def _assemble(
     added_mass: Floats | None,
     modules: dict[str, Module],
     boundaries: Boundaries,
+    moduli: float = 1.0,
 ) -> Assembly:
-    """Arrays of the core, with the present supports and loads of the case.
-
-    Mass scaling is as given, or follows from the case. Elements at `born` have no stress.
-    """
+    """Arrays of the core for the present case; elements at `born` have no stress, and mass scaling
+    is as given or follows from the case."""
     names = topology.group_names
     entries = interface_entries(case, laws, names, topology.node_position)
     materials = [case.materials[case.groups[name].material] for name in names]
@@ -290,6 +291,7 @@ def _assemble(
         safety=case.time.safety,
         added_mass=added_mass,
         one_point=case.elements.hexahedra == "one-point",
+        moduli=moduli,
     )
     at_birth = replace(topology, node_position=born)
     parts = assemble(at_birth, properties, native.padded_stride, modules.values())
@@ -382,6 +384,7 @@ def change(built: Build, *, places: bool = False) -> dict[str, NDArray]:
         built.assembly.added_mass,
         built.modules,
         built.boundaries,
+        built.moduli,
     )
     for module in built.modules.values():
         module.refuse_change(case, built.assembly.counts, parts.counts)

@@ -57,6 +57,7 @@ class Properties:
         one_point: Whether hexahedra have one Gauss point and hourglass springs.
         nodal_mean: Whether tets of blocks of several average their dilatation at the nodes, shape
             (groups,).
+        moduli: Moduli of the rock over those of its materials, see `Branches.part`.
     """
 
     density: Floats
@@ -84,6 +85,7 @@ class Properties:
     safety: float = 1.0
     added_mass: Floats | None = None
     one_point: bool = False
+    moduli: float = 1.0
 
     @property
     def lame(self) -> Floats:
@@ -98,7 +100,8 @@ class Properties:
     @property
     def _elements(self) -> tuple[Floats, Floats]:
         e = self.stiffening
-        return lame_constants(e * self.young_modulus, e * self.poisson_ratio)
+        lame, shear = lame_constants(e * self.young_modulus, e * self.poisson_ratio)
+        return self.moduli * lame, self.moduli * shear
 
 
 @dataclass

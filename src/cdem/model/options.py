@@ -22,6 +22,12 @@ def pairs_loose_joints(case: Case) -> bool:
     return bool(case.initial_stress) or case.water is not None or adds
 
 
+def rescales_moduli(case: Case) -> bool:
+    """Whether a stage gives the rock other moduli under stress: it then needs an initial strain."""
+    given = (stage.damping.maxwell for stage in case.stages)
+    return any(maxwell is not None and maxwell.reference != "static" for maxwell in given)
+
+
 def options_of(case: Case, materials: Sequence[Material]) -> dict[str, Any]:
     """Options of the core by name, for a model of these materials."""
     contact = case.contact
@@ -40,7 +46,7 @@ def options_of(case: Case, materials: Sequence[Material]) -> dict[str, Any]:
         "bond_indentation_triangle": triangle,
         "bond_indentation_quad": quad,
         "semi_edges": contact.edges,
-        "initial_stress": bool(case.initial_stress),
+        "initial_stress": bool(case.initial_stress) or rescales_moduli(case),
         "loose_pairs": pairs_loose_joints(case),
         "lumped_while_bonded": case.moved_masses == "lumped-while-bonded",
         "check_search": contact.check,

@@ -122,6 +122,7 @@ class Simulation(RunState):
         """Bring the core to the initial or restored state of the run."""
         if self.case.stages:  # allows steps before any stage begins
             self.core.set_damping(*stages.damping_of(self.case.stages[0]))
+            self.core.change_rock_damping(*stages.rock_damping_of(self.case.stages[0]))
             self.core.set_lumped(stages.is_lumped(self.case.stages[0]))
         if resume:
             self._restore(force=force)

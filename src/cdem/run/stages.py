@@ -16,6 +16,7 @@ from cdem.errors import CaseError
 from cdem.model.backfill import folded, nodes_of_groups, places
 from cdem.model.build import change
 from cdem.model.curves import constant, hand_over
+from cdem.model.damping import branches_of, damping_of, is_lumped, rock_damping_of
 from cdem.model.interfaces import bonded_pairs, interfaces_of
 from cdem.model.supports import held_components, supports_of
 from cdem.rows import rows_of
@@ -39,37 +40,17 @@ FRAMES = 50
 """Frames of a dynamic stage when output.every is not given."""
 
 
-def _local(stage: Stage) -> float:
-    """Local damping of a stage; the case has filled in its default."""
-    assert stage.damping.local is not None
-    return stage.damping.local
-
-
-def damping_of(stage: Stage) -> tuple[float, float, float, float]:
-    """Local, mass, stiffness and contact damping of a stage."""
-    d = stage.damping
-    assert d.contact is not None
-    return (_local(stage), d.mass, d.stiffness, d.contact)
-
-
-def is_lumped(stage: Stage) -> bool:
-    """Whether a stage moves lumped masses.
-
-    A static stage only looks for rest, which does not depend on inertia, and lumped masses allow a
-    longer step (2.2 times for a tet); local damping scales forces node by node, which is stable
-    only for lumped masses.
-    """
-    return stage.mode == "static" or _local(stage) > 0
-
-
 def apply_settings(sim: RunState, index: int) -> None:
     """Apply damping and `set` of a stage to the core (not to motion or displacement)."""
     stage = sim.case.stages[index]
     for path, value in stage.set.items():
         sim.case.set(path, value)
-    if stage.set:
+    moduli = branches_of(stage.damping.maxwell).part
+    if stage.set or moduli != sim.build.moduli:
+        sim.build.moduli = moduli
         update_core(sim, index)
     sim.core.set_damping(*damping_of(stage))
+    sim.core.set_rock_damping(*rock_damping_of(stage))
     sim.core.set_lumped(is_lumped(stage))
 
 
@@ -116,6 +97,7 @@ def begin(sim: RunState) -> StageState:
     begin_surfaces(sim, stage.name)
     begin_boundaries(sim)
     sim.core.change_mass(is_lumped(stage))
+    damp_rock(sim, stage)
     apply_settings(sim, index)
     hand_over(sim.core, sim.build.curves, sim.begins)
     refuse_curves_over(sim)
@@ -261,6 +243,18 @@ def begin_boundaries(sim: RunState) -> None:
     reaction = sim.fields["reaction"]
     b.boundaries.kept += np.where(before & ~after, reaction, 0.0)
     sim.core.update_model(change(b))
+
+
+def damp_rock(sim: RunState, stage: Stage) -> None:
+    """Start the branches and dashpots of a stage, and give the rock its moduli; stresses stay."""
+    sim.core.change_rock_damping(*rock_damping_of(stage))
+    given = sim.core.fields()["rock.moduli"]
+    moduli = float(given[0]) if len(given) else 1.0
+    if moduli != sim.build.moduli:  # a search has brought the state back
+        sim.build.moduli = moduli
+        update_core(sim, sim.stage_index)
+    if moduli != (now := branches_of(stage.damping.maxwell).part):
+        sim.core.change_moduli(now)
 
 
 def release_part(sim: RunState, stage: StageState) -> bool:

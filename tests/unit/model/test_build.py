@@ -87,7 +87,7 @@ def built(request):
 
 ALWAYS = """
 load.curve load.first load.force
-mass.inverse mass.matrix material.parameters
+mass.inverse mass.matrix material.lambda material.mu material.parameters
 node.block node.block_count node.block_first node.frequency_squared node.gravity_mass
 node.inverse_mass_bound node.least_mass node.lumped_frequency_squared node.mass
 node.mass_axis_stride node.mass_row_first node.place
@@ -110,7 +110,7 @@ hex8.gradient hex8.hourglass hex8.material hex8.volume
 pyramid5.gradient pyramid5.hourglass pyramid5.material pyramid5.volume
 tet4.gradient tet4.hourglass tet4.material tet4.volume
 wedge6.gradient wedge6.hourglass wedge6.material wedge6.volume
-material.lambda material.law material.mu
+material.law
 overlaps.area quads.area triangles.area
 """
 """What follows besides where groups come in."""
