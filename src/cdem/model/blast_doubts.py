@@ -15,6 +15,7 @@ from cdem.model.blasts import face_middles
 from cdem.model.build import Build
 from cdem.model.faces import face_normals
 from cdem.model.selection import select_faces
+from cdem.model.wave_mesh import moving_axes
 
 LEAST_AROUND, FEW_AROUND = 8, 12
 """Faces around a hole below which a blast is refused, and below which the audit warns."""
@@ -122,11 +123,10 @@ def _fast_rise(where: str, build: Build, faces: NDArray[np.intp], blast: Blast) 
     t = build.topology
     nodes = t.face_nodes[faces]
     last = np.where(nodes < 0, nodes[:, 2:3], nodes)
-    x = t.node_position[last]
+    group = build.case.groups[build.group_names[t.face_group[faces[0]]]]
+    x = t.node_position[last] * moving_axes(group)
     edge = max(float(lengths(x[:, k] - x[:, (k + 1) % 4]).max()) for k in range(4))
-    rock = build.case.materials[
-        build.case.groups[build.group_names[t.face_group[faces[0]]]].material
-    ]
+    rock = build.case.materials[group.material]
     shear = rock.young_modulus / (2 * (1 + rock.poisson_ratio))
     rise = 1 / (np.pi * blast.highest_frequency)
     way = float(np.sqrt(shear / rock.density)) * rise

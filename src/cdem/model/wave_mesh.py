@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cdem.case.case import Case
+from cdem.case.schema import Group
 from cdem.errors import CaseError
 from cdem.mesh.arrays import in_pieces, lengths
 from cdem.mesh.element_shapes import NODES
@@ -70,7 +71,7 @@ def longest_edge(build: Build, group: str) -> tuple[float, list[float]]:
     Directions in which the whole group is fixed do not count: no wave runs along them.
     """
     t = build.topology
-    free = np.array([axis not in build.case.groups[group].fix for axis in "xyz"], float)
+    free = moving_axes(build.case.groups[group])
     number = build.group_names.index(group)
     best, place = 0.0, [0.0, 0.0, 0.0]
     for shape in NODES:
@@ -88,6 +89,11 @@ def longest_edge(build: Build, group: str) -> tuple[float, list[float]]:
         if edge[worst] > best:
             best, place = float(edge[worst]), t.node_position[nodes[worst]].mean(axis=0).tolist()
     return best, place
+
+
+def moving_axes(group: Group) -> Floats:
+    """1 for each axis along which a group can move, 0 for others, shape (3,)."""
+    return np.array([axis not in group.fix for axis in "xyz"], float)
 
 
 def shear_speed(build: Build, group: str, interfaces: list[dict[str, Any]]) -> float:
