@@ -10,7 +10,7 @@ from cdem.verification.line_source import DEPTH, HOLE, half_plane, motion
 ROCK = SimpleNamespace(young_modulus=25e9, poisson_ratio=0.25, density=2500.0)
 
 
-def test_the_ground_comes_to_rest_as_statics_demands():
+def test_the_ground_comes_to_rest_as_equilibrium_demands():
     """4 (1 - nu) times the displacement of an endless rock, M r / (2 pi rho c_p² r²)."""
     x, pressure = 75.0, 1e7
     moment = pressure * np.pi * HOLE**2 * 3
