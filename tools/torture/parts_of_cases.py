@@ -84,6 +84,14 @@ loads:
   gravity: [0, 0, -9.81]
   tractions: [{surface: {group: rock, normal: [0, 0, 1]}, traction: [0, 0, -1e4],
     history: [[0, 0], [1, 1]], stage: rest}]
+  blasts:
+    - {surface: {group: late, normal: [0, 0, 1]}, stage: on, delay: 1e-3, pressure: {peak: 1e4, rise: 1, fall: 2},
+       detonation: {from: [0, 0, 3], speed: 4000}}
+    - {surface: {group: late, normal: [0, 0, 1]}, stage: on, pressure: {table: [[0, 0], [1, 1e4]]}}
+    - {surface: {group: late, normal: [0, 0, 1]}, stage: on,
+       pressure: {friedlander: {peak: 1e4, duration: 1, decay: 1, suction: true}}}
+    - {surface: {group: late, normal: [0, 0, 1]}, stage: on, pressure: {rise: 1, fall: 2},
+       explosive: {density: 850, speed: 4000, diameter: 0.05, hole: 0.089}}
   velocities:
     - {group: plug, velocity: [0.1, 0, 0], components: [x], history: [[0, 0], [1, 1]]}
     - {point: [0, 0, 3], velocity: [0, 0, 0]}
@@ -105,6 +113,7 @@ contact: {indentation: 0.01, tolerance: 0.001, refresh: 50, action: indented, ed
   bond_points: quadrature, check: true}
 elements: {formulation: corotational, mass: lumped, hexahedra: one-point, tetrahedra: full,
   strain_limit: 0.3}
+waves: {allow_coarse: true}
 time: {step: auto, safety: 0.7, mass_scaling: {most: 0.01, step: 1e-4}, energy_error: any}
 output: {every: 0.001, fields: [displacement, velocity], checkpoint_every: 100, frames: false,
   maps: {cell: 0.5, groups: [plug]}}

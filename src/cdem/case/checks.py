@@ -65,6 +65,7 @@ def _names(case: CaseParts) -> Iterator[Problem]:
     yield from _surfaces(case)
     yield from boundary_problems(case)
     yield from _rock_damping(case)
+    yield from _blasts(case)
     yield from _curves(case)
     yield from record_contradictions(case)
     yield from _joints(case)
@@ -91,7 +92,20 @@ def _surfaces(case: CaseParts) -> Iterator[Problem]:
             )
     for i, history in enumerate(case.histories):
         if "surface_force" in history.quantities and not case.surface_entries:
-            yield ("histories", i, "quantities"), "surface_force needs loads.surfaces in the case"
+            yield (
+                ("histories", i, "quantities"),
+                "surface_force needs loads.surfaces or loads.blasts in the case",
+            )
+
+
+def _blasts(case: CaseParts) -> Iterator[Problem]:
+    for i, blast in enumerate(case.loads.blasts):
+        stage = next((s for s in case.stages if blast.stage in (None, s.name)), None)
+        if stage is not None and stage.mode == "static":
+            yield (
+                ("loads", "blasts", i, "stage"),
+                f"{stage.name} is static, and a blast needs time; write stage: NAME of a dynamic stage",
+            )
 
 
 def _rock_damping(case: CaseParts) -> Iterator[Problem]:
@@ -321,7 +335,7 @@ def _group_names(case: CaseParts) -> Iterator[tuple[tuple[str | int, ...], str]]
         if joint.group is not None:
             yield ("model", "joints", i, "group"), joint.group
     yield from _listed_names(case)
-    for kind in ("tractions", "surfaces", "velocities", "supports"):
+    for kind in ("tractions", "surfaces", "blasts", "velocities", "supports"):
         for i, load in enumerate(getattr(case.loads, kind)):
             if getattr(load, "group", None) is not None:
                 yield ("loads", kind, i, "group"), load.group

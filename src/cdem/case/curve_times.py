@@ -13,7 +13,7 @@ Problem = tuple[Keys, str]  # path, problem
 
 def timed(case: CaseParts) -> Iterator[tuple[Keys, Timed]]:
     """Every place of a case that may have a curve over time."""
-    for kind in ("tractions", "surfaces", "velocities"):
+    for kind in ("tractions", "surfaces", "blasts", "velocities"):
         for i, load in enumerate(getattr(case.loads, kind)):
             yield ("loads", kind, i), load
     if case.water is not None:

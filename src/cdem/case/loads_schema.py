@@ -6,6 +6,7 @@ from typing import Literal
 
 from pydantic import Field, model_validator
 
+from cdem.case.blasts_schema import Blast
 from cdem.case.bodies_schema import exactly_one
 from cdem.case.surface_schema import AnySurfaceLoad, Surface
 from cdem.case.timed_schema import Factored
@@ -91,5 +92,6 @@ class Loads(Part):
     surfaces: list[AnySurfaceLoad] = Field(
         [], description="Laws on faces, which follow their motion: pressure, and laws of your own"
     )
+    blasts: list[Blast] = Field([], description="Pressure of explosives on the walls of holes")
     velocities: list[PrescribedVelocity] = Field([], description="Driven nodes")
     supports: list[Support] = Field([], description="Held nodes")

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import Discriminator, Field, PrivateAttr, Tag, model_validator
 
+from cdem.case.blasts_schema import BlastEntry, Waves
 from cdem.case.bodies_schema import Model, exactly_one
 from cdem.case.bolts_schema import Bolts, BoltType
 from cdem.case.boundaries_schema import Boundary
@@ -423,6 +424,7 @@ class CaseParts(Part):
     contact: Contact = Field(Contact(), description="Contact search")
     elements: Elements = Field(Elements(), description="Element formulation")
     time: Time = Field(Time(), description="The time step")
+    waves: Waves = Field(Waves(), description="Waves in the mesh")
     output: Output = Field(Output(), description="Results to write")
     histories: list[HistoryPoint] = Field([], description="Quantities recorded over time")
 
@@ -447,12 +449,17 @@ class CaseParts(Part):
         return absent_groups([(stage.remove, stage.add) for stage in self.stages], begun)
 
     @property
-    def surface_entries(self) -> list[tuple[Keys, SurfaceLoad]]:
+    def surface_entries(self) -> list[tuple[Keys, SurfaceLoad | BlastEntry]]:
         """All entries that act on faces by a law, each with its place in the case."""
-        return [
-            *((("loads", "surfaces", i), item) for i, item in enumerate(self.loads.surfaces)),
-            *((("boundaries", i), b.dashpots) for i, b in enumerate(self.boundaries) if b.absorbs),
+        entries: list[tuple[Keys, SurfaceLoad | BlastEntry]] = [
+            (("loads", "surfaces", i), item) for i, item in enumerate(self.loads.surfaces)
         ]
+        for i, blast in enumerate(self.loads.blasts):
+            entries += [(("loads", "blasts", i), ring) for ring in blast.entries]
+        for i, boundary in enumerate(self.boundaries):
+            if boundary.absorbs:
+                entries.append((("boundaries", i), boundary.dashpots))
+        return entries
 
     @property
     def moved_masses(self) -> Literal["exact", "lumped-while-bonded", "lumped"]:

@@ -55,6 +55,8 @@ class SurfaceLoad(Factored):
     """A law on faces in their present position; each law adds its parameters."""
 
     acts_from_stage: ClassVar[bool] = True
+    ring: ClassVar[None] = None
+    """It acts on all its faces, not on a ring of them."""
     if TYPE_CHECKING:
         law: str
     surface: Surface = Field(description="Surface of the mesh, or {group, normal}")

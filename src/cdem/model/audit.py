@@ -15,6 +15,7 @@ from cdem.case.laws import BLOCK_LAWS
 from cdem.errors import CaseError
 from cdem.mesh.arrays import in_pieces, lengths
 from cdem.mesh.element_shapes import NODES, SLIVER
+from cdem.model.blast_doubts import blast_doubts
 from cdem.model.build import Build
 from cdem.model.compliance import bonded_interfaces, coarse_beams
 from cdem.model.contact_overlaps import contact_interfaces
@@ -26,6 +27,7 @@ from cdem.model.model_warnings import crowded_edges, idle_bonds, uneven_tiles, u
 from cdem.model.options import pairs_loose_joints
 from cdem.model.ruling_step import remedy, ruling_step
 from cdem.model.slips import slips
+from cdem.model.wave_mesh import highest_frequency, wave_doubts, wave_lines, wave_mesh
 from cdem.model.wetted import idle_water, wet_bonds
 from cdem.seismic.measures import measures
 from cdem.seismic.tables import record_lines
@@ -71,6 +73,8 @@ class Audit:
         self.modules = {name: module.report(build) for name, module in build.modules.items()}
         self.step = self._step()
         self.damping = rock_dampings(build, self.interfaces)
+        self.frequency = highest_frequency(build.case)
+        self.wave_mesh = wave_mesh(build, self.interfaces, self.frequency)
         self.warnings = self._warnings()
 
     # ------------------------------------------------------------------ parts
@@ -217,6 +221,8 @@ class Audit:
                 f"the "
                 "overlap is intended"
             )
+        out += blast_doubts(b)
+        out += wave_doubts(b.case, self.wave_mesh, self.frequency)
         out += self._pulled()
         if b.case.time.step != "auto" and self.step["dt"] > self.step["limit"]:
             out.append(
@@ -272,6 +278,7 @@ class Audit:
             "contacts": self.contacts,
             "discs": self.discs,
             **self.modules,
+            "wave_mesh": self.wave_mesh,
             "initial_stress": self._build.initial.as_dict() if self._build.initial else None,
             "time_step": self.step,
             "records": {name: self._record(name) for name in self._build.case.records},
@@ -312,6 +319,7 @@ class Audit:
         lines += self._initial_text()
         lines += self._modules_text()
         lines += self._records_text()
+        lines += wave_lines(self.wave_mesh, self.frequency)
         s = self.step
         lines += [
             "",

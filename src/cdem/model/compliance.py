@@ -25,7 +25,7 @@ DEEP = 2.5
 
 
 def bonded_interfaces(build: Build) -> list[dict[str, Any]]:
-    """One row per bonded pair of groups or set of joints: pairs, area, stiffness, compliance.
+    """One row per bonded pair of groups or set of joints: pairs, area, rock beside, stiffness, compliance.
 
     It is the compliance of the bonds over the compliance of the rock beside them, both under the
     same
@@ -64,12 +64,14 @@ def bonded_interfaces(build: Build) -> list[dict[str, Any]]:
 
 
 def _row(key: tuple, row: dict[str, Any], volume: Floats) -> dict[str, Any]:
-    percent = 100 * row["soft"] / volume[found_in(row["e"], len(volume))].sum()
+    beside = volume[found_in(row["e"], len(volume))].sum()
+    percent = 100 * row["soft"] / beside
     return {
         "between": list(key[:2]),
         "joint": key[2],
         "bonded_pairs": row["pairs"],
         "area": row["area"],
+        "rock_volume": float(beside),
         "stiffness_n": [min(row["k"]), max(row["k"])],
         "strength_factors": [min(row["w"]), max(row["w"])],
         "compliance_percent": float(percent[:3].max()),

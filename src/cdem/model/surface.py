@@ -12,12 +12,12 @@ from cdem.case.case import Case
 from cdem.case.laws import SURFACE_LAWS
 from cdem.errors import CaseError
 from cdem.mesh.topology import Topology
+from cdem.model.blasts import faces_of
 from cdem.model.boundaries import impedances
 from cdem.model.curves import add_curve
 from cdem.model.faces import face_areas, face_normals
 from cdem.model.flat_arrays import table
 from cdem.model.module import Built, Module, Parts
-from cdem.model.selection import select_faces
 
 KINDS = {"surface_triangles": 3, "surface_quads": 4}
 """Sets of faces in the core, with the number of vertices of a face."""
@@ -45,15 +45,17 @@ class SurfaceModel(Module):
         entries = case.surface_entries
         if not entries:
             return
-        items = [item for _, item in entries]
-        faces = [
-            select_faces(case, t, parts.names, item.surface, ".".join(map(str, keys)))
-            for keys, item in entries
-        ]
+        items: list[Any] = [item for _, item in entries]
+        faces, histories = zip(
+            *(faces_of(case, t, parts.names, keys, item) for keys, item in entries), strict=True
+        )
         of_law = [
             native.surface_numbers(item.law, SURFACE_LAWS[item.law].numbers(item)) for item in items
         ]
-        curves = [add_curve(item.history, item.stage, parts.curves) for item in items]
+        curves = [
+            add_curve(history, item.stage, parts.curves)
+            for history, item in zip(histories, items, strict=True)
+        ]
         first = case.stages[0].name
         out.counts["surface.count"] = len(items)
         out.arrays |= {
@@ -85,15 +87,19 @@ class SurfaceModel(Module):
     def refuse_change(self, case: Case, was: dict[str, int], now: dict[str, int]) -> None:
         if _entries(case) != self.entries:
             raise CaseError(
-                f"{case.where('loads.surfaces')}: loads.surfaces: a stage can change the parameters and the "
-                "history of an entry, not its surface, law or stage; write another entry with stage:"
+                f"{case.where('loads')}: loads: a stage can change the parameters and the history of an "
+                "entry of surfaces or blasts, not its surface, law, stage or detonation; write another "
+                "entry with stage:"
             )
 
     def report(self, build: Built) -> list[dict[str, Any]]:
-        return [
-            {"law": item.law, "stage": item.stage, "faces": faces, "area": area}
-            for (_, item), (faces, area) in zip(build.case.surface_entries, self.found, strict=True)
-        ]
+        rows: dict[tuple[Any, ...], dict[str, Any]] = {}
+        for (keys, item), (faces, area) in zip(build.case.surface_entries, self.found, strict=True):
+            empty = {"law": item.law, "stage": item.stage, "faces": 0, "area": 0.0}
+            row = rows.setdefault(keys, empty)  # all rings of a blast
+            row["faces"] += faces
+            row["area"] += area
+        return list(rows.values())
 
     def lines(self, report: list[dict[str, Any]]) -> list[str]:
         return [
@@ -104,5 +110,5 @@ class SurfaceModel(Module):
 
 
 def _entries(case: Case) -> list[tuple[Any, ...]]:
-    """Surface, law and stage of every entry."""
-    return [(item.surface, item.law, item.stage) for _, item in case.surface_entries]
+    """Surface, law, stage and ring of every entry."""
+    return [(item.surface, item.law, item.stage, item.ring) for _, item in case.surface_entries]

@@ -26,6 +26,7 @@ def test_new_lists_and_writes_templates(run_cli, cube_folder):
     assert names == [
         "arch",
         "bedded_slope",
+        "blast",
         "dam",
         "foliated",
         "incline",
@@ -45,7 +46,9 @@ def test_new_lists_and_writes_templates(run_cli, cube_folder):
         assert run_cli("new", name, "cases")[0] == 0
         if name != "landslide_dem":  # is to be meshed first
             assert Case.load(cube_folder / "cases" / f"{name}.yaml").title
-    assert all((cube_folder / "cases" / file).exists() for file in ("slope.msh", "valley.asc"))
+    assert all(
+        (cube_folder / "cases" / file).exists() for file in ("slope.msh", "blast.msh", "valley.asc")
+    )
     status, _, err = run_cli("new", "incline", "cases")
     assert status == 1
     assert "cases/incline.yaml: exists already; use --overwrite" in err
@@ -66,6 +69,7 @@ def test_new_lists_and_writes_templates(run_cli, cube_folder):
         "dam",
         "foliated",
         "bedded_slope",
+        "blast",
         "arch",
         "rockfall",
         "road_cut",
