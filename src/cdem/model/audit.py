@@ -16,6 +16,7 @@ from cdem.errors import CaseError
 from cdem.mesh.arrays import in_pieces, lengths
 from cdem.mesh.element_shapes import NODES, SLIVER
 from cdem.model.blast_doubts import blast_doubts
+from cdem.model.boundary_doubts import boundary_doubts
 from cdem.model.build import Build
 from cdem.model.compliance import bonded_interfaces, coarse_beams
 from cdem.model.contact_overlaps import contact_interfaces
@@ -222,6 +223,7 @@ class Audit:
                 "overlap is intended"
             )
         out += blast_doubts(b)
+        out += boundary_doubts(b)
         out += wave_doubts(b.case, self.wave_mesh, self.frequency)
         out += self._pulled()
         if b.case.time.step != "auto" and self.step["dt"] > self.step["limit"]:

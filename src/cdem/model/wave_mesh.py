@@ -14,6 +14,7 @@ from cdem.errors import CaseError
 from cdem.mesh.arrays import in_pieces, lengths
 from cdem.mesh.element_shapes import NODES
 from cdem.model.build import Build
+from cdem.seismic.measures import highest_frequency as of_motion
 
 Floats = NDArray[np.float64]
 GOOD, LEAST = 10.0, 5.0
@@ -32,7 +33,16 @@ EDGES = {
 
 def highest_frequency(case: Case) -> float:
     """Highest frequency of the waves of a case; 0 if nothing in it sends waves [Hz]."""
-    return max((blast.highest_frequency for blast in case.loads.blasts), default=0.0)
+    records = {given.record for boundary in case.boundaries for given in boundary.inputs}
+    records |= {driven.record for driven in case.loads.velocities if driven.record is not None}
+    shaken = (case.processed(name) for name in sorted(records))
+    return max(
+        (
+            *(blast.highest_frequency for blast in case.loads.blasts),
+            *(of_motion(record.velocity, record.step) for record in shaken),
+        ),
+        default=0.0,
+    )
 
 
 def wave_mesh(

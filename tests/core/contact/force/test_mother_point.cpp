@@ -7,8 +7,8 @@ namespace cdem::test {
 
 namespace {
 
-struct Blocks : Scene {
-  Blocks() {
+struct BlocksInTouch : Scene {
+  BlocksInTouch() {
     Random random(1);
     add_box({0, 0, 0}, {1, 2, 3});
     add_tet(random, {5, 0, 0}, 1);
@@ -28,7 +28,7 @@ struct Blocks : Scene {
 }  // namespace
 
 TEST_CASE("without action coefficient the point is the vertex, with its mass") {
-  const Blocks blocks;
+  const BlocksInTouch blocks;
   for (Index m = 0; m < 10; ++m)
     for (Index k = 0; k < 3; ++k) {
       const Index node = on_host(blocks.state.search.exposed)[m].corner[k];
@@ -41,7 +41,7 @@ TEST_CASE("without action coefficient the point is the vertex, with its mass") {
 }
 
 TEST_CASE("the coefficient moves the point towards the centre, with weights that sum to one") {
-  Blocks blocks;
+  BlocksInTouch blocks;
   blocks.model.rules.action = 0.3;
   for (Index m = 0; m < 10; ++m) {
     const ExposedRow& row = on_host(blocks.state.search.exposed)[m];
@@ -66,7 +66,7 @@ TEST_CASE("the coefficient moves the point towards the centre, with weights that
 TEST_CASE("points of a lane are those of its slots") {
   Random random(2);
   for (const Real action : {0.0, 0.3}) {
-    Blocks blocks;
+    BlocksInTouch blocks;
     blocks.model.rules.action = action;
     IndexPack m, slot;
     for (Index j = 0; j < lanes; ++j) {
@@ -85,7 +85,7 @@ TEST_CASE("points of a lane are those of its slots") {
 }
 
 TEST_CASE("a contact held at a rim has an action coefficient of its own") {
-  Blocks blocks;
+  BlocksInTouch blocks;
   blocks.model.rules.action = 0.01;
   const Index m = 2, corner = on_host(blocks.state.search.exposed)[m].corner[1];
   on_host(blocks.state.springs.rim_action)[4 * m + 1] = 0.4;
