@@ -461,6 +461,12 @@ class CaseParts(Part):
                 entries.append((("boundaries", i), boundary.dashpots))
         return entries
 
+    def surface_name(self, keys: Keys) -> str:
+        """Name of an entry that acts on faces, for reports: its own, or its place in the case."""
+        if keys[0] == "boundaries":
+            return f"boundary {self.boundaries[int(keys[1])].name}"
+        return ".".join(map(str, keys))
+
     @property
     def moved_masses(self) -> Literal["exact", "lumped-while-bonded", "lumped"]:
         """The value of `elements.mass`, with the meaning of `auto` put in."""

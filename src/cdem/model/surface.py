@@ -95,7 +95,8 @@ class SurfaceModel(Module):
     def report(self, build: Built) -> list[dict[str, Any]]:
         rows: dict[tuple[Any, ...], dict[str, Any]] = {}
         for (keys, item), (faces, area) in zip(build.case.surface_entries, self.found, strict=True):
-            empty = {"law": item.law, "stage": item.stage, "faces": 0, "area": 0.0}
+            name = build.case.surface_name(keys)
+            empty = {"name": name, "law": item.law, "stage": item.stage, "faces": 0, "area": 0.0}
             row = rows.setdefault(keys, empty)  # all rings of a blast
             row["faces"] += faces
             row["area"] += area
@@ -103,7 +104,7 @@ class SurfaceModel(Module):
 
     def lines(self, report: list[dict[str, Any]]) -> list[str]:
         return [
-            f"  {one['law']} acts on {one['faces']:,} faces, {one['area']:.6g} m2"
+            f"  {one['name']}: {one['law']} acts on {one['faces']:,} faces, {one['area']:.6g} m2"
             + (f", from the begin of {one['stage']}" if one["stage"] else "")
             for one in report
         ]

@@ -32,6 +32,7 @@ def test_new_lists_and_writes_templates(run_cli, cube_folder):
         "incline",
         "landslide",
         "landslide_dem",
+        "quake",
         "road_cut",
         "rockfall",
         "safety",
@@ -76,6 +77,7 @@ def test_new_lists_and_writes_templates(run_cli, cube_folder):
         "toppling",
         "wedge",
         "landslide_dem",
+        "quake",
     ],
 )
 def test_templates_check(run_cli, name):
