@@ -11,9 +11,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from cdem.mesh.element_volumes import Solids
 from cdem.output.deposit import Deposit
 from cdem.output.geotiff import write_geotiff
-from cdem.run.flow_maps import ARRIVAL, MAXIMA, FlowMaps
+from cdem.run.flow_maps import ARRIVAL, MAXIMA, TRACE, FlowMaps
 from cdem.terrain.rasters import Raster
 
 Floats = NDArray[np.float64]
@@ -56,6 +57,7 @@ LAYERS = {
     "pressure_max": Layer("kPa", "largest pressure (density x velocity^2)", REDS, 1e-3),
     ARRIVAL: Layer("s", "arrival after the start", PLASMA),
     "change": Layer("m", "end less start", BALANCE),
+    "permanent_displacement": Layer("m", "displacement of the rock at the end", VIRIDIS),
 }
 """All maps, by name."""
 OF_VELOCITY = {
@@ -65,6 +67,14 @@ OF_VELOCITY = {
 """Maps that need the field velocity in the frames."""
 OF_PIECES = {"energy_piece_max"}
 """Maps that need the field piece."""
+
+
+@dataclass
+class Moved:
+    """Rock at the end, and the length of the displacement of each element [m]."""
+
+    solids: Solids
+    way: Floats
 
 
 @dataclass
@@ -94,6 +104,7 @@ class Maps:
         *,
         from_frames: str = "",
         left_out: Container[str] = (),
+        moved: Moved | None = None,
         classes: Mapping[str, Sequence[float]] | None = None,
     ) -> Maps:
         """Make the maps.
@@ -104,6 +115,7 @@ class Maps:
             end: Thickness at the end, on cells of the same size.
             from_frames: Why `flow` does not come from records of the run.
             left_out: Names of maps that cannot be made.
+            moved: Displacement of the rock at the end; None leaves its map empty.
             classes: Limits of the classes by name; other maps get fitting classes.
         """
         cell, met = flow.cell, flow.affected
@@ -119,6 +131,7 @@ class Maps:
             **{name: over(np.where(met, flow[name], np.nan)) for name in MAXIMA},
             ARRIVAL: over(flow[ARRIVAL]),
             "change": over(np.where(rock | met, ends - starts, np.nan)),
+            "permanent_displacement": over(_moved(moved, flow)),
         }
         kept = {
             name: Raster(*corner, cell, rasters[name].values * layer.scale)
@@ -162,6 +175,21 @@ class Maps:
             path.with_suffix(".qml").write_text(raster_style(layer, self.classes[name]))
             paths += [path, path.with_suffix(".qml")]
         return paths
+
+
+def _moved(moved: Moved | None, flow: FlowMaps) -> Floats:
+    """Largest displacement of an element above each cell [m]; not a number where there is no rock."""
+    out = np.full(flow.layers.shape[1:], np.nan)
+    if moved is None or not len(moved.way):
+        return out
+    low, shape = moved.solids.grid(flow.cell)
+    most = np.full(shape[0] * shape[1], np.nan)
+    for part in moved.solids.parts(flow.cell, low, shape):
+        above = np.abs(part.share) > TRACE
+        np.fmax.at(most, part.place[above], moved.way[part.owner[above]])
+    column, row = np.subtract(low, flow.low)
+    out[row : row + shape[0], column : column + shape[1]] = most.reshape(shape)
+    return out
 
 
 def _spread(deposit: Deposit, flow: FlowMaps) -> Floats:

@@ -104,9 +104,16 @@ class Body:
 
     def velocities(self, frame: int) -> Floats:
         """Mean velocity of each element's nodes [m/s]; not a number if it was not recorded."""
-        if "velocity" not in self.series.names["PointData"]:
+        return self._means("velocity", frame)
+
+    def displacements(self, frame: int) -> Floats:
+        """Mean displacement of each element's nodes since the last reset [m]; see `velocities`."""
+        return self._means("displacement", frame)
+
+    def _means(self, name: str, frame: int) -> Floats:
+        if name not in self.series.names["PointData"]:
             return np.full((len(self.mass), 3), np.nan)
-        nodal = self.series.field("PointData", "velocity", frame)
+        nodal = self.series.field("PointData", name, frame)
         return np.concatenate([nodal[nodes].mean(axis=1) for nodes in self.cells.values()])
 
     def ground(self, x: Floats, y: Floats) -> Floats:

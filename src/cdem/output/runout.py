@@ -17,7 +17,7 @@ from cdem.errors import CdemError
 from cdem.mesh.element_volumes import Solids
 from cdem.output.deposit import Deposit, checked_cell
 from cdem.output.grain_sizes import GrainSizes
-from cdem.output.map_layers import OF_PIECES, OF_VELOCITY, Maps
+from cdem.output.map_layers import OF_PIECES, OF_VELOCITY, Maps, Moved
 from cdem.output.map_picture import View, frame_of, ground_grid
 from cdem.output.mapped import Fit, compare
 from cdem.output.moving_mass import Body, Line
@@ -92,7 +92,8 @@ def _measure(
     source = Deposit.of(body.start, deposit.cell)
     maps = Maps.of(
         flow, source, deposit, from_frames=why, classes=classes,
-        left_out=_left_out(body) if why else (),
+        left_out=_left_out(body, recorded=not why),
+        moved=Moved(left, np.linalg.norm(body.displacements(body.frames[-1])[stays], axis=1)),
     )  # fmt: skip
     front = front_of(body, body.frames[-1], way)
     fit = None
@@ -148,10 +149,13 @@ def _azimuth(body: Body, end: Solids, direction: float | None) -> float:
     return float(direction)
 
 
-def _left_out(body: Body) -> set[str]:
-    """Maps that the recorded fields do not allow."""
+def _left_out(body: Body, *, recorded: bool) -> set[str]:
+    """Maps that the recorded fields do not allow; largest values may be recorded by the run."""
     names = body.series.names
-    out = set() if "velocity" in names["PointData"] else set(OF_VELOCITY)
+    out = set() if "displacement" in names["PointData"] else {"permanent_displacement"}
+    if recorded:
+        return out
+    out |= set() if "velocity" in names["PointData"] else OF_VELOCITY
     return out if "piece" in names["CellData"] else out | OF_PIECES
 
 

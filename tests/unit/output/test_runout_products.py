@@ -85,6 +85,9 @@ def test_maps_of_a_slide_hold_what_is_known(slid):
     volume = np.nansum(rasters["thickness_end"].values) * 0.25
     assert volume == pytest.approx(found.history["volume"][-1], rel=1e-9)
     assert np.nansum(rasters["change"].values) == pytest.approx(0, abs=1e-3)
+    moved, ends = rasters["permanent_displacement"].values, rasters["thickness_end"].values
+    assert np.nanmax(moved) == np.nanmin(moved) == pytest.approx(SPEED * TIME, rel=1e-3)
+    assert (np.isfinite(moved) >= (np.nan_to_num(ends) > 1e-3)).all()
     assert found.maps.flow.jump == pytest.approx(SPEED * TIME / FRAMES / 0.5, rel=1e-2)
     assert "maxima have gaps" not in found.text()
     assert "maxima have gaps" in runout.measure(slid, cell=0.05).text()
