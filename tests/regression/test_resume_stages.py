@@ -233,6 +233,7 @@ def quake():
         [static("rest"), dynamic("shake", 0.03), static("stand", 40), dynamic("again", 0.02)],
         records={"r": {"samples": [0, 1, 3, 1, -2, -4, -1, 1, 3, 1, 0, -1, 0], "step": 0.003,
                        "unit": "m/s", "scale": 0.02}},
+        waves={"allow_coarse": True},
     )  # fmt: skip
     del case["groups"]["ground"], case["interfaces"]["pairs"]
     case["loads"]["supports"] = [

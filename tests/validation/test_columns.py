@@ -35,7 +35,7 @@ def ground(
         [{"group": "a", "box": box, "rotate": {"axis": [0, 0, 1], "angle": turn},
           "translate": list(at)}],
         {"a": {}}, rock=ROCK, elements={"mass": "lumped"},
-        records={"wave": WAVE | {"scale": scale}},
+        records={"wave": WAVE | {"scale": scale}}, waves={"allow_coarse": True},
         boundaries=[{"name": "base", "surface": {"group": "a", "normal": [0, 0, -1]},
                      "input": given, "stage": stage} | base, *faces],
         **({"stages": [{"name": "shake", "mode": "dynamic", "duration": 0.15}]} | more),

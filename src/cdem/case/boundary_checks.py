@@ -13,6 +13,7 @@ Problem = tuple[Keys, str]  # path, problem
 
 def boundary_problems(case: CaseParts) -> Iterator[Problem]:
     """Contradictions between boundaries and the other parts of a case."""
+    yield from _histories(case)
     names = [stage.name for stage in case.stages]
     for i, boundary in enumerate(case.boundaries):
         place = ("boundaries", i)
@@ -27,6 +28,26 @@ def boundary_problems(case: CaseParts) -> Iterator[Problem]:
                 )
         if boundary.free_field is not None:
             yield from _base(case, boundary, (*place, "free_field", "base"))
+
+
+def _histories(case: CaseParts) -> Iterator[Problem]:
+    """Histories of waves through boundaries."""
+    names = {boundary.name: boundary for boundary in case.boundaries}
+    for i, history in enumerate(case.histories):
+        if history.boundary is None:
+            continue
+        boundary = names.get(history.boundary)
+        if boundary is None:
+            known = ", ".join(names) or "none"
+            yield (
+                ("histories", i, "boundary"),
+                f"no boundary '{history.boundary}'; the case has: {known}",
+            )
+        elif not boundary.quiet and set(history.quantities) - {"v_base"}:
+            yield (
+                ("histories", i, "quantities"),
+                f"v_up and v_down need a quiet boundary; {boundary.name} is none",
+            )
 
 
 def _stage(case: CaseParts, boundary: Boundary, place: Keys, names: list[str]) -> Iterator[Problem]:

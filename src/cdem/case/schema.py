@@ -341,8 +341,12 @@ class Output(Part):
     )
 
 
+WAVES = ("v_base", "v_up", "v_down")
+"""Quantities of boundaries."""
+
+
 class HistoryPoint(Part):
-    """Quantities recorded over time, of a group, a node or a bolt."""
+    """Quantities recorded over time, of a group, a node, a bolt or a boundary."""
 
     name: FileName = Field(
         description="Unique name; start of the column names, and name of a picture"
@@ -350,12 +354,17 @@ class HistoryPoint(Part):
     group: Name | None = Field(None, description="Follow this group")
     point: Length3 | None = Field(None, description="Follow the node nearest to this point [m]")
     bolt: Name | None = Field(None, description="Follow a bolt, or the largest value of a pattern")
+    boundary: Name | None = Field(None, description="Follow the waves through a boundary")
     quantities: list[
         Literal[
             "centroid", "displacement", "velocity", "acceleration", "energy", "force", "water_force",
-            "surface_force", "axial_force", "slip", "plate_force",
+            "surface_force", "axial_force", "slip", "plate_force", "v_base", "v_up", "v_down",
         ]
-    ] = Field(min_length=1, description="Quantities; the last three are for bolts")  # fmt: skip
+    ] = Field(
+        min_length=1,
+        description="Quantities; axial_force, slip and plate_force are for bolts, v_base, v_up and v_down "
+        "for boundaries: their motion, the wave that comes in, and the one that leaves",
+    )  # fmt: skip
     every: Annotated[float, Quantity("s", above=0)] | None = Field(
         None,
         description="Most time between its rows in a dynamic stage; all histories are one table, "
@@ -365,11 +374,13 @@ class HistoryPoint(Part):
 
     @model_validator(mode="after")
     def _one_place(self) -> HistoryPoint:
-        exactly_one(self, ("group", "point", "bolt"))
-        of_bolts = ("axial_force", "slip", "plate_force")
+        exactly_one(self, ("group", "point", "bolt", "boundary"))
+        of = dict.fromkeys(("axial_force", "slip", "plate_force"), "bolt")
+        of |= dict.fromkeys(WAVES, "boundary")
+        here = next((key for key in ("bolt", "boundary") if getattr(self, key) is not None), None)
         for quantity in self.quantities:
-            if (quantity in of_bolts) != (self.bolt is not None):
-                place = "a bolt" if quantity in of_bolts else "a group or a point"
+            if (needed := of.get(quantity)) != here:
+                place = f"a {needed}" if needed else "a group or a point"
                 raise ValueError(f"{quantity} needs {place}")
         for quantity in ("centroid", "energy"):
             if self.point is not None and quantity in self.quantities:

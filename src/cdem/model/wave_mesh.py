@@ -151,7 +151,7 @@ def wave_doubts(case: Case, rows: list[dict[str, Any]], frequency: float) -> Ite
         what = (
             f"{case.where(path)}: {path}: the S wave of {frequency:.4g} Hz is {row['elements']:.2g} elements "
             f"long, of {row['edge']:.3g} m at {at}; mesh the group with edges of "
-            f"{row['speed'] / (GOOD * frequency):.2g} m, or let the pressure rise more slowly: the mesh bears "
+            f"{row['speed'] / (GOOD * frequency):.2g} m, or send lower frequencies (band of a record, rise of a pressure): the mesh bears "
             f"{row['bears']:.3g} Hz"
         )
         if row["elements"] < LEAST and not case.waves.allow_coarse:

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from cdem.case.boundaries_schema import Boundary
 from cdem.errors import CaseError
 from cdem.rows import rows_of
 from cdem.run.state import RowBefore, RunState
@@ -29,6 +30,9 @@ def tracks(sim: RunState) -> list[tuple[str, Any]]:
         if entry.bolt is not None:
             out += _of_bolts(sim, entry.name, entry.bolt, entry.quantities)
             continue
+        if entry.boundary is not None:
+            out += _of_boundary(sim, entry.name, entry.boundary, entry.quantities)
+            continue
         if entry.group is not None:
             nodes = sim.build.nodes_of(entry.group)
         else:
@@ -46,6 +50,39 @@ def tracks(sim: RunState) -> list[tuple[str, Any]]:
                 name = f"{entry.name}.{quantity}_{'xyz'[axis]} [{units[quantity]}]"
                 out.append((name, lambda values=of_time, a=axis: values()[a]))
     return out
+
+
+def _of_boundary(
+    sim: RunState, name: str, boundary: str, quantities: Sequence[str]
+) -> list[tuple[str, Any]]:
+    """Motion of a boundary, the wave that comes in there, and the one that leaves: base less up."""
+    place = next(p for p in sim.build.boundaries.places if p.boundary.name == boundary)
+
+    def wave(quantity: str) -> NDArray[np.float64]:
+        up, base = incoming_wave(sim, place.boundary), np.zeros(3)
+        if quantity != "v_up":
+            base = _value(sim, "velocity", place.nodes.astype(np.intp))
+        return {"v_base": base, "v_up": up, "v_down": base - up}[quantity]
+
+    return [
+        (f"{name}.{quantity}_{'xyz'[axis]} [m/s]", lambda q=quantity, a=axis: wave(q)[a])
+        for quantity in quantities
+        for axis in range(3)
+    ]
+
+
+def incoming_wave(sim: RunState, boundary: Boundary) -> NDArray[np.float64]:
+    """Velocity of the wave that comes in through a boundary, at the middle of the last step [m/s]."""
+    begin = 0.0 if boundary.stage is None else sim.begins.get(boundary.stage, np.inf)
+    time = sim.time - 0.5 * float(sim.core.scalars()["dt_last"]) - begin
+    total = np.zeros(3)
+    for given in boundary.inputs:
+        record = sim.case.processed(given.record)
+        if given.kind == "compliant" and time > 0:
+            times = record.step * np.arange(len(record.velocity))
+            speed = np.interp(time, times, record.velocity, 0.0, 0.0)
+            total += speed * np.array(given.motion_of_record)
+    return total
 
 
 def _acceleration(sim: RunState, name: str, nodes: NDArray[np.intp]) -> NDArray[np.float64]:

@@ -118,3 +118,40 @@ def test_a_boundary_that_does_not_fit_is_one_clear_line(name):
     with pytest.raises(CaseError, match=told) as error:
         cdem.Simulation(wrong, threads=1)
     assert "\n" not in str(error.value) and "boundaries." in str(error.value)
+
+
+def test_histories_of_a_boundary_split_its_motion(tmp_path):
+    """An outcrop moves twice as far as the wave; what comes down is the base less that wave."""
+    wave = {"record": "r", "direction": [1, 0, 0]}
+    samples = [0, 1, 2, 1, 0, -1, -2, -1, 0, 1, 0]
+    base = {"name": "base", "quiet": True, "input": wave} | face(*DOWN)
+    history = [{"name": "foot", "boundary": "base", "quantities": ["v_base", "v_up", "v_down"],
+                "every": 5e-4}]  # fmt: skip
+    shaken = case(BLOCKS, {"a": {}}, rock=ROCK, boundaries=[base], histories=history,
+                  waves={"allow_coarse": True},
+                  stages=[{"name": "shake", "mode": "dynamic", "duration": 0.01}],
+                  records={"r": {"samples": samples, "unit": "m/s", "step": 1e-3, "scale": 0.01}})  # fmt: skip
+    simulation = cdem.Simulation(shaken, threads=1, output=tmp_path / "run")
+    simulation.run()
+    table = np.genfromtxt(tmp_path / "run/histories.csv", delimiter=",", names=True, deletechars="")
+    along = {key: table[f"foot.{key}_x_[m/s]"] for key in ("v_base", "v_up", "v_down")}
+    np.testing.assert_allclose(along["v_base"], along["v_up"] + along["v_down"], atol=1e-15)
+    dt = simulation.core.scalars()["dt_last"]
+    expected = np.interp(
+        table["time_[s]"] - dt / 2, 1e-3 * np.arange(11), 5e-3 * np.array(samples), 0, 0
+    )
+    np.testing.assert_allclose(along["v_up"][2:], expected[2:], rtol=1e-6, atol=1e-9)
+    assert np.abs(along["v_down"]).max() > 1e-3
+
+
+@pytest.mark.parametrize(
+    "history, told",
+    [
+        ({"boundary": "x", "quantities": ["v_up"]}, r"histories\.0\.boundary: no boundary 'x'"),
+        ({"boundary": "base", "quantities": ["velocity"]}, r"velocity needs a group or a point"),
+        ({"group": "a", "quantities": ["v_up"]}, r"v_up needs a boundary"),
+    ],
+)
+def test_a_wrong_history_of_a_boundary_is_one_clear_line(history, told):
+    with pytest.raises(CaseError, match=told):
+        model(quiet("base", *DOWN), histories=[{"name": "h"} | history])

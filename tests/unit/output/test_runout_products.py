@@ -86,7 +86,7 @@ def test_maps_of_a_slide_hold_what_is_known(slid):
     assert volume == pytest.approx(found.history["volume"][-1], rel=1e-9)
     assert np.nansum(rasters["change"].values) == pytest.approx(0, abs=1e-3)
     moved, ends = rasters["permanent_displacement"].values, rasters["thickness_end"].values
-    assert np.nanmax(moved) == np.nanmin(moved) == pytest.approx(SPEED * TIME, rel=1e-3)
+    np.testing.assert_allclose(moved[np.isfinite(moved)], SPEED * TIME, rtol=1e-3)
     assert (np.isfinite(moved) >= (np.nan_to_num(ends) > 1e-3)).all()
     assert found.maps.flow.jump == pytest.approx(SPEED * TIME / FRAMES / 0.5, rel=1e-2)
     assert "maxima have gaps" not in found.text()
