@@ -61,6 +61,34 @@ def test_flat_ground_moves_as_one_column(base):
     assert uneven(bare) > 0.1
 
 
+def test_bonded_layers_move_as_one_column():
+    """The bond between two groups is a layer of the column."""
+    boxes = [{"group": g, "box": {"size": [12, 8, 6], "divisions": [6, 4, 3]}, "translate": [0, 0, z]}
+             for g, z in (("a", 0), ("b", 6))]  # fmt: skip
+    sides = [
+        {"name": name, "surface": {"group": ["a", "b"], "normal": normal},
+         "free_field": {"base": "base"}}
+        for name, normal in SIDES.items()
+    ]  # fmt: skip
+    base = {"name": "base", "surface": {"group": "a", "normal": [0, 0, -1]}, "quiet": True,
+            "input": {"record": "wave", "direction": [2, 0, 1]}}  # fmt: skip
+    strong = {"friction_angle": 30, "cohesion": "1 GPa", "tensile_strength": "1 GPa",
+              "stiffness_n": "0.2 GPa/m", "stiffness_s": "0.1 GPa/m"}  # fmt: skip
+    model = case(boxes, {"a": {}, "b": {}}, rock=ROCK, elements={"mass": "lumped"},
+                 interfaces={"default": strong}, boundaries=[base, *sides],
+                 waves={"allow_coarse": True}, records={"wave": WAVE | {"scale": 1e-4}})  # fmt: skip
+    sim = cdem.Simulation(model, threads=1)
+    assert [one["levels"] for one in sim.audit.modules["columns"]] == [8] * 4
+    sim.step(150)
+    z, v = sim.build.start_position[:, 2], sim.fields["velocity"]
+    for group, heights in (("a", (0, 4, 6)), ("b", (6, 8, 12))):
+        inside = np.isin(np.arange(len(z)), sim.build.nodes_of(group))
+        for height in heights:
+            level = inside & (abs(z - height) < 1e-6)
+            # reached 1.3e-6
+            assert np.ptp(v[level], axis=0).max() < 8e-6 * np.abs(v).max()
+
+
 def test_a_model_that_is_turned_moves_as_before():
     sims = [ground(turn=angle, scale=0.1) for angle in (0.0, 30.0)]
     turned = []
