@@ -52,7 +52,8 @@ struct StageDamping {
   bool lumped = false;
 };
 
-/// Stable step with the damping of a stage, before the safety factor  [s]. The model stays as it is.
+/// Stable step with the damping of a stage, before the safety factor  [s]. The model stays as it
+/// is.
 Real stable_step(Model& model, const State& state, const StageDamping& damping);
 
 /// Find the stable step; the coming step shrinks to it at once and grows slowly.

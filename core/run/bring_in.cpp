@@ -19,7 +19,8 @@ namespace {
 void renew_elements(const Model& m, State& s, const Flag* comes) {
   for_each_element_set(m, s, [&](auto, const ElementSet& e, ElementState& es) {
     const auto nodes = on_host(e.nodes);
-    for (Column<Real>* column : {&es.history, &es.yielded, &es.point_stress, &es.branch, &es.dashpot}) {
+    for (Column<Real>* column :
+         {&es.history, &es.yielded, &es.point_stress, &es.branch, &es.dashpot}) {
       const auto numbers = on_host(*column);
       for (Index i = 0; i < e.count; ++i)
         for (std::size_t k = 0; comes[nodes[i]] && k < numbers.size() / e.stride; ++k)
