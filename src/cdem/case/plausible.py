@@ -10,7 +10,7 @@ from typing import Any
 from cdem.case.curve_times import in_static_stages
 from cdem.case.interface_schema import InterfacePair
 from cdem.case.laws import SURFACE_LAWS
-from cdem.case.record_checks import record_doubts
+from cdem.case.record_checks import record_doubts, record_users
 from cdem.case.schema import CaseParts, Stage
 from cdem.case.types import Part, Stiffness
 from cdem.units import to_number
@@ -282,14 +282,15 @@ def _local_damping(case: CaseParts, index: int, stage: Stage) -> Iterator[Proble
             f"{local:g} in a dynamic stage slows every motion, even a fall; usual is 0 to 0.05 "
             "(0.8 is for static stages and slow tests)",
         )
-    if stage.mode == "dynamic" and local > 0 and _absorbs(case):
+    if stage.mode == "dynamic" and local > 0 and _has_waves(case):
         yield (
             keys,
-            f"{local:g} distorts the waves that a quiet surface is there for, as it brakes every node by "
+            f"{local:g} distorts the waves of records and at quiet surfaces, as it brakes every node by "
             "its force; use rayleigh or maxwell",
         )
 
 
-def _absorbs(case: CaseParts) -> bool:
-    """Whether a surface lets waves out."""
-    return any(SURFACE_LAWS[entry.law].absorbs for _, entry in case.surface_entries)
+def _has_waves(case: CaseParts) -> bool:
+    """Whether a record sends waves in, or a surface lets them out."""
+    quiet = any(SURFACE_LAWS[entry.law].absorbs for _, entry in case.surface_entries)
+    return quiet or any(record_users(case))

@@ -20,6 +20,7 @@ from cdem.model.boundary_doubts import boundary_doubts
 from cdem.model.build import Build
 from cdem.model.compliance import bonded_interfaces, coarse_beams
 from cdem.model.contact_overlaps import contact_interfaces
+from cdem.model.damping_doubts import damping_doubts
 from cdem.model.damping_report import rock_dampings
 from cdem.model.disc_areas import disc_areas, disc_lines, weak_bridges
 from cdem.model.held import unheld_blocks
@@ -224,6 +225,7 @@ class Audit:
             )
         out += blast_doubts(b)
         out += boundary_doubts(b)
+        out += damping_doubts(b.case)
         out += wave_doubts(b.case, self.wave_mesh, self.frequency)
         out += self._pulled()
         if b.case.time.step != "auto" and self.step["dt"] > self.step["limit"]:
