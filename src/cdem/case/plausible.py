@@ -7,10 +7,10 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
-from cdem.case.curve_times import in_static_stages
+from cdem.case.curve_times import in_static_stages, record_users
 from cdem.case.interface_schema import InterfacePair
 from cdem.case.laws import SURFACE_LAWS
-from cdem.case.record_checks import record_doubts, record_users
+from cdem.case.record_checks import record_doubts
 from cdem.case.schema import CaseParts, Stage
 from cdem.case.types import Part, Stiffness
 from cdem.units import to_number

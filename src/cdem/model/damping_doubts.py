@@ -7,9 +7,9 @@ from collections.abc import Iterator
 import numpy as np
 
 from cdem.case.case import Case
+from cdem.case.curve_times import record_users
 from cdem.case.damping_schema import Maxwell
 from cdem.case.laws import SURFACE_LAWS
-from cdem.case.record_checks import record_users
 from cdem.case.schema import Stage
 from cdem.model.damping import branches_of
 from cdem.seismic.measures import highest_frequency
