@@ -77,5 +77,6 @@ def _is_quiet(case: Case, index: int) -> bool:
     """Whether a surface lets waves out in a stage."""
     begun = {None, *(stage.name for stage in case.stages[: index + 1])}
     return any(
-        SURFACE_LAWS[entry.law].absorbs and entry.stage in begun for _, entry in case.surface_entries
+        SURFACE_LAWS[entry.law].absorbs and entry.stage in begun
+        for _, entry in case.surface_entries
     )

@@ -35,9 +35,9 @@ def told(folder, damping, base=QUIET):
     ("damping", "words"),
     [
         ("{mass: 10}", "10 1/s damps waves of 2.5 Hz, the middle of the record, by 31.8 %"),
-        ("{maxwell: {ratio: 0.01, band: [1, 20], reference: 30}}", 
+        ("{maxwell: {ratio: 0.01, band: [1, 20], reference: 30}}",
          "reference: 30 Hz is outside the band, 1 to 20 Hz"),
-        ("{maxwell: {ratio: 0.05, band: [1, 20]}}", 
+        ("{maxwell: {ratio: 0.05, band: [1, 20]}}",
          "4.8 % of a wave comes back; write reference: 4.47"),
     ],
 )  # fmt: skip

@@ -74,18 +74,18 @@ def run(study):
     samples = pulse(np.arange(0, 1.2, STEP))
     smooth = np.linspace(0.5, 9, 200)
     simulation, ours = measured(study, samples)
-    rocks = rocks_of(simulation.case)
+    soil, rock = rocks_of(simulation.case)
     for f in FREQUENCIES:
         study.check(f"surface over outcrop at {f:g} Hz", within=0.01,
-                    theory=theory(f, *rocks), ours=ours(f)[0])  # fmt: skip
-    lines = {"theory": (smooth, theory(smooth, *rocks)), ".cdem": (smooth, ours(smooth))}
+                    theory=theory(f, soil, rock), ours=ours(f)[0])  # fmt: skip
+    lines = {"theory": (smooth, theory(smooth, soil, rock)), ".cdem": (smooth, ours(smooth))}
     for law, numbers in LAWS.items():
         simulation, ours = measured(study, samples, *SOFT, f"stages.0.damping={{{law}: {numbers}}}")
         damping = simulation.case.stages[0].damping
         for f in FREQUENCIES:
             study.check(f"{law}, surface over outcrop at {f:g} Hz", within=0.01,
-                        theory=damped_theory(f, *rocks, damping), ours=ours(f)[0])  # fmt: skip
-        lines[f"{law}, theory"] = smooth, damped_theory(smooth, *rocks, damping)
+                        theory=damped_theory(f, soil, rock, damping), ours=ours(f)[0])  # fmt: skip
+        lines[f"{law}, theory"] = smooth, damped_theory(smooth, soil, rock, damping)
         lines[f".{law}, cdem"] = smooth, ours(smooth)
     study.curve("Amplification", "frequency [Hz]", "surface over outcrop [1]", lines)
 
