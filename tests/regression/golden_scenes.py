@@ -1,4 +1,4 @@
-"""Eighteen small scenes whose results are pinned, and the hash of a result.
+"""Small scenes whose results are pinned, and the hash of a result.
 
 `python tests/regression/golden_scenes.py` prints every scene's hash and time; with `--write` it
 renews golden.json. A renewed golden.json needs a line in CHANGELOG.md that says why, and names it

@@ -1,4 +1,4 @@
-"""Scenes of several stages whose whole state is pinned: water, excavation, flow, a domain."""
+"""Scenes of several stages whose whole state is pinned: damping, water, excavation, flow, a domain."""
 
 from __future__ import annotations
 
@@ -147,7 +147,38 @@ stages:
      set: {loads.surfaces.2.pressure: 30 kPa}}
 """
 
-STAGED = {"soaked": SOAKED, "dug": DUG, "flowing": FLOWING, "leaving": LEAVING, "pressed": PRESSED}
+DAMPED = """
+title: Pillars of all shapes of elements, one of bonded blocks, shake with damping that changes
+model:
+  blocks:
+    - {group: rock, box: {size: [1, 1, 2], divisions: [1, 1, 2], shape: hex8}}
+    - {group: rock, box: {size: [1, 1, 2], divisions: [1, 1, 2], shape: pyramid5}, translate: [2, 0, 0]}
+    - {group: rock, box: {size: [1, 1, 2], divisions: [1, 1, 2], shape: wedge6}, translate: [4, 0, 0]}
+    - {group: bonded, box: {size: [1, 1, 2], divisions: [1, 1, 2], shape: tet4}, translate: [6, 0, 0]}
+    - {group: bonded, box: {size: [1, 1, 2], divisions: [1, 1, 2], shape: hex8}, translate: [8, 0, 0]}
+  split: {bonded: elements}
+materials: {r: {density: 2600, poisson_ratio: 0.2, young_modulus: 0.2 GPa}}
+groups: {rock: {material: r}, bonded: {material: r}}
+interfaces: {default: {friction_angle: 35, cohesion: 1 GPa, tensile_strength: 1 GPa}}
+loads:
+  gravity: [0, 0, -9.81]
+  supports:
+    - {surface: {group: rock, normal: [0, 0, -1]}, fix: [x, y, z]}
+    - {surface: {group: bonded, normal: [0, 0, -1]}, fix: [x, y, z]}
+  tractions:
+    - {surface: {group: rock, normal: [0, 0, 1]}, traction: [100 kPa, 0, 0],
+       history: [[0, 0], [0.005, 1], [0.01, 0]], stage: shake}
+    - {surface: {group: bonded, normal: [0, 0, 1]}, traction: [0, 100 kPa, 0],
+       history: [[0, 0], [0.005, 1], [0.01, 0]], stage: shake}
+stages:
+  - {name: rest, mode: static, relax: adaptive, tolerance: 0.01}
+  - {name: shake, mode: dynamic, duration: 0.03,
+     damping: {maxwell: {ratio: 0.1, band: [10, 1000], reference: 100}}}
+  - {name: ring, mode: dynamic, duration: 0.01, damping: {rayleigh: {ratio: 0.1, frequency: 60}}}
+  - {name: end, mode: dynamic, duration: 0.01, damping: {maxwell: {ratio: 0.05, band: [10, 1000]}}}
+"""
+
+STAGED = {"damped": DAMPED, "soaked": SOAKED, "dug": DUG, "flowing": FLOWING, "leaving": LEAVING, "pressed": PRESSED}
 
 
 def run_stages(name: str, threads: int) -> cdem.Simulation:
