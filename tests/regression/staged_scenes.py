@@ -178,7 +178,14 @@ stages:
   - {name: end, mode: dynamic, duration: 0.01, damping: {maxwell: {ratio: 0.05, band: [10, 1000]}}}
 """
 
-STAGED = {"damped": DAMPED, "soaked": SOAKED, "dug": DUG, "flowing": FLOWING, "leaving": LEAVING, "pressed": PRESSED}
+STAGED = {
+    "damped": DAMPED,
+    "soaked": SOAKED,
+    "dug": DUG,
+    "flowing": FLOWING,
+    "leaving": LEAVING,
+    "pressed": PRESSED,
+}
 
 
 def run_stages(name: str, threads: int) -> cdem.Simulation:

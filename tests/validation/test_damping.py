@@ -16,13 +16,13 @@ SHAPES = ["tet4", "pyramid5", "wedge6", "hex8", "one-point"]
 STRONG = {"friction_angle": 30, "cohesion": 1e9, "tensile_strength": 1e9}
 
 
-def bar(damping, shape="hex8", stages=None, bonds=False, **more):
-    """A free bar of 4 x 1 x 1 m in one dynamic stage."""
+def bar(damping, shape="hex8", stages=None, bonds=False, turned=0, **more):
+    """A free bar of 4 x 1 x 1 m in one dynamic stage, turned about z by an angle [deg]."""
     box = {"size": [4, 1, 1], "divisions": [4, 1, 1], "shape": shape.replace("one-point", "hex8")}
     elements = {"hexahedra": "one-point"} if shape == "one-point" else {}
     stages = stages or [{"name": "ring", "mode": "dynamic", "duration": 0.1, "damping": damping}]
     return case(
-        [{"group": "bar", "box": box}],
+        [{"group": "bar", "box": box, "rotate": {"axis": [0, 0, 1], "angle": turned}}],
         {"bar": {}},
         interfaces={"default": STRONG},
         elements=elements | more.pop("elements", {}),
@@ -135,6 +135,24 @@ def test_damped_rock_has_the_same_bits_on_all_threads(damping):
         stages=[{"name": "ring", "mode": "dynamic", "duration": 1, "damping": damping}],
     )  # fmt: skip
     assert digest(ring(made, 1, 30)) == digest(ring(made, 2, 30))
+
+
+@KINDS
+@pytest.mark.parametrize("shape", ["tet4", "wedge6", "hex8"])
+def test_a_bar_that_is_turned_moves_and_loses_as_before(damping, shape):
+    """By 90 degrees about z, bonds between all elements; to round-off of positions of 4 m."""
+    quarter = np.array([[0, -1, 0], [1, 0, 0], [0, 0, 1]])
+    found = []
+    for turned in (0, 90):
+        sim = cdem.Simulation(bar(damping, shape, bonds=True, turned=turned), threads=1)
+        strike(sim, 0.1)
+        velocity = rows_of(sim.core, "node.motion").velocity
+        velocity[:] = velocity @ (quarter.T if turned else np.eye(3))
+        sim.step(400)
+        found.append((sim.fields["displacement"], sim.energies["damping"]))
+    (before, lost), (after, lost_turned) = found
+    assert np.abs(after - before @ quarter.T).max() < 4e-14
+    assert lost_turned == pytest.approx(lost, rel=1e-9)
 
 
 SHAKEN = [
