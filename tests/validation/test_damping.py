@@ -140,18 +140,21 @@ def test_damped_rock_has_the_same_bits_on_all_threads(damping):
 @KINDS
 @pytest.mark.parametrize("shape", ["tet4", "wedge6", "hex8"])
 def test_a_bar_that_is_turned_moves_and_loses_as_before(damping, shape):
-    """By 90 degrees about z, bonds between all elements; to round-off of positions of 4 m."""
+    """By 90 degrees about z; to round-off of positions of 4 m. The order of nodes may differ."""
     quarter = np.array([[0, -1, 0], [1, 0, 0], [0, 0, 1]])
     found = []
     for turned in (0, 90):
-        sim = cdem.Simulation(bar(damping, shape, bonds=True, turned=turned), threads=1)
-        strike(sim, 0.1)
-        velocity = rows_of(sim.core, "node.motion").velocity
-        velocity[:] = velocity @ (quarter.T if turned else np.eye(3))
+        sim = cdem.Simulation(bar(damping, shape, turned=turned), threads=1)
+        back = quarter if turned else np.eye(3)
+        place = sim.fields["position"] @ back
+        wave = 0.1 * np.sin(place @ [[3, 1, 2], [2, 4, 1], [1, 2, 5]])
+        rows_of(sim.core, "node.motion").velocity[:] = wave @ back.T
         sim.step(400)
-        found.append((sim.fields["displacement"], sim.energies["damping"]))
+        order = np.lexsort(np.round(place, 6).T)
+        found.append(((sim.fields["displacement"] @ back)[order], sim.energies["damping"]))
     (before, lost), (after, lost_turned) = found
-    assert np.abs(after - before @ quarter.T).max() < 4e-14
+    assert np.abs(before).max() > 1e-4
+    assert np.abs(after - before).max() < 4e-14
     assert lost_turned == pytest.approx(lost, rel=1e-9)
 
 
