@@ -6,8 +6,12 @@ from scenes import case, digest
 
 import cdem
 from cdem.errors import UnstableError
+from cdem.model.compliance import bonded_interfaces
+from cdem.model.damping import branches_of
+from cdem.model.damping_report import rock_dampings
 from cdem.rows import rows_of
-from cdem.verification.runner import problems
+from cdem.verification.ringing import frequency_and_ratio, size
+from cdem.verification.runner import Study, problems
 
 RAYLEIGH = {"rayleigh": {"ratio": 0.1, "frequency": 60}}
 MAXWELL = {"maxwell": {"ratio": 0.1, "band": [10, 1000]}}
@@ -51,6 +55,21 @@ def test_the_ratio_of_a_ringing_bar_is_as_asked(name):
     (problem,) = problems([name])
     outcome = problem.run(threads=1)
     assert outcome.passed, [check.texts() for check in outcome.checks if not check.passed]
+
+
+@pytest.mark.parametrize("shape", ["hex8", "tet4"])
+def test_branches_damp_bonded_rock_by_the_share_that_is_told(shape):
+    """A ringing bar whose elements are blocks; uniform stress, so 3 %."""
+    (problem,) = problems(["maxwell_ratio"])
+    study = Study(problem.folder, threads=1)
+    split = ["model.split={bar: elements}", "interfaces={default: {cohesion: 1e9, "
+             "tensile_strength: 1e9, friction_angle: 30}}"]  # fmt: skip
+    sim = study.simulate(size(2000.0, 2.0, shape), *split)
+    (told,) = rock_dampings(sim.build, bonded_interfaces(sim.build))
+    moves, ratio = frequency_and_ratio(sim, 3, 10)
+    branches = branches_of(sim.case.stages[0].damping.maxwell)
+    assert told.share < 0.81
+    assert ratio == pytest.approx(told.share * branches.ratio(moves), rel=0.03)
 
 
 @KINDS

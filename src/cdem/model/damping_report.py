@@ -34,7 +34,7 @@ class RockDamping:
         instead: Step with Maxwell branches in place of Rayleigh's stiffness part [s], or None.
         band: Their band [Hz].
         stiffness: Storage moduli at the ends of a band over the moduli of the case, or None.
-        share: Least part of the strain energy that is in elements, not in bonds and joints.
+        share: Least part of the strain energy in motion that is in elements, not in bonds and joints.
     """
 
     stage: str
@@ -87,9 +87,7 @@ def rock_dampings(build: Build, interfaces: Sequence[dict[str, Any]]) -> list[Ro
         if stage.damping.rayleigh is not None:
             found.append(_of_rayleigh(build, stage, stage.damping.rayleigh))
         elif stage.damping.maxwell is not None:
-            found.append(
-                _of_maxwell(build, stage, stage.damping.maxwell, _share(build, interfaces))
-            )
+            found.append(_of_maxwell(build, stage, stage.damping.maxwell, interfaces))
     return found
 
 
@@ -112,18 +110,27 @@ def _of_rayleigh(build: Build, stage: Stage, rayleigh: Rayleigh) -> RockDamping:
     )
 
 
-def _share(build: Build, interfaces: Sequence[dict[str, Any]]) -> float:
-    """Least part of the strain energy that is in elements, under stress that is uniform."""
+def _share(build: Build, interfaces: Sequence[dict[str, Any]], moduli: float) -> float:
+    """Least part of the strain energy that is in elements, under stress that is uniform.
+
+    Args:
+        build: The model.
+        interfaces: Its bonded interfaces.
+        moduli: Moduli of the rock in motion over those of the case.
+    """
     softer = [1.0, *(made_up.stiffening for made_up in build.compensation.values())]
     for row in interfaces:
         if not set(row["between"]) <= build.compensation.keys():
             most = max(row["compliance_percent"], row["shear_compliance_percent"])
             softer.append(1 + most / 100)
-    return 1 / max(softer)
+    return 1 / (1 + moduli * (max(softer) - 1))
 
 
-def _of_maxwell(build: Build, stage: Stage, maxwell: Maxwell, share: float) -> RockDamping:
+def _of_maxwell(
+    build: Build, stage: Stage, maxwell: Maxwell, interfaces: Sequence[dict[str, Any]]
+) -> RockDamping:
     branches, (low, high) = branches_of(maxwell), maxwell.band
+    middle = branches.part * branches.storage(float(np.sqrt(low * high)))
     f = np.geomspace(low, high, 200)
     ratios = branches.ratio(f)
     ends = sorted((int(ratios.argmin()), int(ratios.argmax())))
@@ -135,7 +142,7 @@ def _of_maxwell(build: Build, stage: Stage, maxwell: Maxwell, share: float) -> R
         step=_step(build, stage, branches=branches),
         band=(low, high),
         stiffness=(branches.part * branches.storage(low), branches.part * branches.storage(high)),
-        share=share,
+        share=_share(build, interfaces, middle),
     )
 
 
