@@ -7,12 +7,11 @@ from collections.abc import Iterator
 import numpy as np
 
 from cdem.case.case import Case
-from cdem.case.curve_times import record_users
 from cdem.case.damping_schema import Maxwell
 from cdem.case.laws import SURFACE_LAWS
 from cdem.case.schema import Stage
 from cdem.model.damping import branches_of
-from cdem.seismic.measures import highest_frequency
+from cdem.model.wave_frequencies import record_frequencies
 
 STRONG = 0.1
 """Mass damping over the circular frequency of the waves, above which it is told [1]."""
@@ -32,25 +31,16 @@ def damping_doubts(case: Case) -> Iterator[str]:
 
 def _mass(case: Case, index: int, stage: Stage, path: str) -> Iterator[str]:
     """Tell of mass damping that brakes the waves of a record."""
-    alpha, middle = stage.damping.mass, _middle_frequency(case, index)
-    if stage.mode == "dynamic" and alpha > STRONG * 2 * np.pi * middle > 0:
+    alpha, waves = stage.damping.mass, record_frequencies(case, index)
+    if stage.mode == "static" or waves is None:
+        return
+    middle, _ = waves
+    if alpha > STRONG * 2 * np.pi * middle:
         yield (
             f"{case.where(path)}: {path}: {alpha:g} 1/s damps waves of {middle:.3g} Hz, the middle of "
             f"the record, by {100 * alpha / (4 * np.pi * middle):.3g} % of critical, and slower ones "
             "more; use rayleigh or maxwell"
         )
-
-
-def _middle_frequency(case: Case, index: int) -> float:
-    """Frequency with half of the energy of the spectrum below it, of the slowest record in a stage.
-
-    Returns:
-        Frequency [Hz]; 0 if there is no record in it.
-    """
-    begun = {None, *(stage.name for stage in case.stages[: index + 1])}
-    names = {name for _, name, stage in record_users(case) if stage in begun}
-    records = [case.processed(name) for name in sorted(names)]
-    return min((highest_frequency(r.velocity, r.step, 0.5) for r in records), default=0.0)
 
 
 def _branches(case: Case, index: int, maxwell: Maxwell, where: str) -> Iterator[str]:
@@ -61,6 +51,12 @@ def _branches(case: Case, index: int, maxwell: Maxwell, where: str) -> Iterator[
         yield (
             f"{where}.reference: {reference:g} Hz is outside the band, {low:g} to {high:g} Hz, where "
             "nothing is known of the ratio; use a frequency in it"
+        )
+    waves = record_frequencies(case, index)
+    if waves is not None and not low <= waves[0] <= high:
+        yield (
+            f"{where}.band: {waves[0]:.3g} Hz, the middle of the record, is outside the band, {low:g} to "
+            f"{high:g} Hz, where the ratio falls; use a band around it"
         )
     branches, middle = branches_of(maxwell), float(np.sqrt(low * high))
     speed = np.sqrt(branches.part * branches.storage(middle))

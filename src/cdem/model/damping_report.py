@@ -12,9 +12,11 @@ from cdem.case.damping_schema import Maxwell, Rayleigh
 from cdem.case.schema import Stage
 from cdem.model.build import Build
 from cdem.model.damping import Branches, branches_of, damping_of, is_lumped, rayleigh_factors
+from cdem.model.wave_frequencies import record_frequencies
 
 AWAY = 5.0
-"""The ratio of Rayleigh damping is told at its frequency and at this multiple of it."""
+"""The ratio of Rayleigh damping is told at its frequency and, without a record, at this multiple of
+it."""
 MOSTLY = 0.99
 """Part of the strain energy in elements below which the undamped rest is told."""
 DECADE = 10.0
@@ -28,7 +30,8 @@ class RockDamping:
     Attributes:
         stage: Name of the stage.
         kind: "rayleigh" or "maxwell".
-        ratios: Ratio at two frequencies, by frequency [Hz].
+        ratios: Ratio by frequency [Hz]: at the frequency of Rayleigh damping, and at those of records; at
+            the extremes in the band of Maxwell branches.
         without: Step without this damping, safety included [s].
         step: The same with it [s].
         instead: Step with Maxwell branches in place of Rayleigh's stiffness part [s], or None.
@@ -83,17 +86,20 @@ def rock_dampings(build: Build, interfaces: Sequence[dict[str, Any]]) -> list[Ro
         interfaces: Its bonded interfaces, see `bonded_interfaces`.
     """
     found = []
-    for stage in build.case.stages:
+    for index, stage in enumerate(build.case.stages):
         if stage.damping.rayleigh is not None:
-            found.append(_of_rayleigh(build, stage, stage.damping.rayleigh))
+            waves = record_frequencies(build.case, index) or ()
+            found.append(_of_rayleigh(build, stage, stage.damping.rayleigh, waves))
         elif stage.damping.maxwell is not None:
             found.append(_of_maxwell(build, stage, stage.damping.maxwell, interfaces))
     return found
 
 
-def _of_rayleigh(build: Build, stage: Stage, rayleigh: Rayleigh) -> RockDamping:
+def _of_rayleigh(
+    build: Build, stage: Stage, rayleigh: Rayleigh, waves: Sequence[float]
+) -> RockDamping:
     factors, f = rayleigh_factors(rayleigh), rayleigh.frequency
-    away = AWAY * f if rayleigh.part == "both" else f / AWAY
+    away = waves or [AWAY * f if rayleigh.part == "both" else f / AWAY]
     instead = band = None
     if rayleigh.part == "both":
         band = (f / DECADE, f * DECADE)
@@ -102,7 +108,7 @@ def _of_rayleigh(build: Build, stage: Stage, rayleigh: Rayleigh) -> RockDamping:
     return RockDamping(
         stage=stage.name,
         kind="rayleigh",
-        ratios={at: factors.ratio(at) for at in (f, away)},
+        ratios={at: factors.ratio(at) for at in (f, *away)},
         without=_step(build, stage),
         step=_step(build, stage, mass=factors.mass, time=factors.stiffness),
         instead=instead,

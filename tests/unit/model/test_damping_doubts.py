@@ -37,6 +37,7 @@ def told(folder, damping, base=QUIET):
         ("{mass: 10}", "10 1/s damps waves of 2.5 Hz, the middle of the record, by 31.8 %"),
         ("{maxwell: {ratio: 0.01, band: [1, 20], reference: 30}}",
          "reference: 30 Hz is outside the band, 1 to 20 Hz"),
+        ("{maxwell: {ratio: 0.01, band: [5, 20]}}", "band: 2.5 Hz, the middle of the record, is outside"),
         ("{maxwell: {ratio: 0.05, band: [1, 20]}}",
          "4.8 % of a wave comes back; write reference: 4.47"),
     ],

@@ -9,14 +9,17 @@ from cdem.model.damping_report import rock_dampings
 BOX = {"group": "a", "box": {"size": [20, 20, 20], "divisions": [4, 4, 4]}}
 
 
-def told(damping, split="connected"):
+SINE = {"samples": [0, 1, 0, -1] * 20 + [0], "unit": "m/s", "step": 0.05, "scale": 0.1}
+
+
+def told(damping, split="connected", **more):
     made = {
         "model": {"blocks": [BOX], "split": {"a": split}},
         "materials": {"r": {"density": 2650, "young_modulus": "30 GPa", "poisson_ratio": 0.25}},
         "groups": {"a": {"material": "r"}},
         "interfaces": {"default": {"friction_angle": 30, "cohesion": 1e9, "tensile_strength": 1e9}},
         "stages": [{"name": "shake", "mode": "dynamic", "duration": 1, "damping": damping}],
-    }
+    } | more
     build = cdem.Simulation(cdem.Case.from_dict(made), threads=1).build
     return rock_dampings(build, bonded_interfaces(build))
 
@@ -34,6 +37,20 @@ def test_rayleigh_is_told_with_its_cost_and_what_maxwell_would_take():
     lines = "\n".join(found.lines())
     assert "damping of stage shake, rayleigh: 5 % at 3 Hz, 13 % at 15 Hz" in lines
     assert "maxwell: {ratio: 0.05, band: [0.3, 30]}" in lines
+
+
+def test_rayleigh_is_told_at_the_middle_and_highest_frequency_of_the_record():
+    """A sine of 5 Hz, whose spectrum is narrow."""
+    load = {"group": "a", "velocity": [1, 0, 0], "components": ["x"], "record": "sine"}
+    (found,) = told(
+        {"rayleigh": {"ratio": 0.05, "frequency": 3}},
+        records={"sine": SINE},
+        loads={"gravity": [0, 0, 0], "velocities": [load]},
+    )
+    at, middle, highest = found.ratios
+    assert (at, middle) == (3, pytest.approx(5, abs=0.1))
+    assert middle < highest < 10
+    assert found.ratios[middle] == pytest.approx(0.025 * (3 / middle + middle / 3))
 
 
 def test_the_mass_part_alone_costs_nothing_and_is_told_below_its_frequency():
