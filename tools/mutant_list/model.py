@@ -243,4 +243,28 @@ FAULTS = [
         '2 * rayleigh.ratio / w if rayleigh.part == "both" else 0.0',
         "tests/unit/model/test_damping.py",
     ),
+    Mutant(
+        "share of bonds",
+        "the share of bonds by the moduli of slow loading",
+        "src/cdem/model/damping_report.py",
+        "return 1 / (1 + moduli * (max(softer) - 1))",
+        "return 1 / max(softer)",
+        "tests/unit/model/test_damping_report.py",
+    ),
+    Mutant(
+        "records of a later stage",
+        "mass damping is compared with records of all stages",
+        "src/cdem/model/wave_frequencies.py",
+        "case.stages[: index + 1]",
+        "case.stages",
+        "tests/unit/model/test_damping_doubts.py",
+    ),
+    Mutant(
+        "speed in damped rock",
+        "quiet faces next to damped rock are judged by the moduli of slow loading",
+        "src/cdem/model/damping_doubts.py",
+        "np.sqrt(branches.part * branches.storage(middle))",
+        "np.sqrt(branches.part)",
+        "tests/unit/model/test_damping_doubts.py",
+    ),
 ]
