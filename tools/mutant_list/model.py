@@ -261,10 +261,10 @@ FAULTS = [
     ),
     Mutant(
         "speed in damped rock",
-        "quiet faces next to damped rock are judged by the moduli of slow loading",
+        "quiet faces are judged by the moduli of slow loading",
         "src/cdem/model/damping_doubts.py",
-        "np.sqrt(branches.part * branches.storage(middle))",
-        "np.sqrt(branches.part)",
+        "np.sqrt(own / stiffer_in_waves(maxwell_at(case, entry.stage)))",
+        "np.sqrt(own)",
         "tests/unit/model/test_damping_doubts.py",
     ),
 ]

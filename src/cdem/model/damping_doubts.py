@@ -10,7 +10,8 @@ from cdem.case.case import Case
 from cdem.case.damping_schema import Maxwell
 from cdem.case.laws import SURFACE_LAWS
 from cdem.case.schema import Stage
-from cdem.model.damping import branches_of
+from cdem.model.boundaries import maxwell_at
+from cdem.model.damping import stiffer_in_waves
 from cdem.model.wave_frequencies import record_frequencies
 
 STRONG = 0.1
@@ -23,16 +24,19 @@ def damping_doubts(case: Case) -> Iterator[str]:
     """Warnings about the damping of stages with waves."""
     for index, stage in enumerate(case.stages):
         path = f"stages.{index}.damping"
+        if stage.mode == "static":
+            continue
         yield from _mass(case, index, stage, f"{path}.mass")
         if stage.damping.maxwell is not None:
             where = f"{case.where(f'{path}.maxwell')}: {path}.maxwell"
             yield from _branches(case, index, stage.damping.maxwell, where)
+        yield from _quiet(case, index, stage, f"{case.where(path)}: {path}")
 
 
 def _mass(case: Case, index: int, stage: Stage, path: str) -> Iterator[str]:
     """Tell of mass damping that brakes the waves of a record."""
     alpha, waves = stage.damping.mass, record_frequencies(case, index)
-    if stage.mode == "static" or waves is None:
+    if waves is None:
         return
     middle, _ = waves
     if alpha > STRONG * 2 * np.pi * middle:
@@ -44,7 +48,7 @@ def _mass(case: Case, index: int, stage: Stage, path: str) -> Iterator[str]:
 
 
 def _branches(case: Case, index: int, maxwell: Maxwell, where: str) -> Iterator[str]:
-    """Tell of moduli of Maxwell's branches that do not fit the band, or a quiet surface."""
+    """Tell of a band that misses the waves, and of moduli of another frequency."""
     low, high = maxwell.band
     reference = maxwell.reference
     if reference != "static" and not low <= reference <= high:
@@ -58,21 +62,21 @@ def _branches(case: Case, index: int, maxwell: Maxwell, where: str) -> Iterator[
             f"{where}.band: {waves[0]:.3g} Hz, the middle of the record, is outside the band, {low:g} to "
             f"{high:g} Hz, where the ratio falls; use a band around it"
         )
-    branches, middle = branches_of(maxwell), float(np.sqrt(low * high))
-    speed = np.sqrt(branches.part * branches.storage(middle))
-    back = abs(speed - 1) / (speed + 1)
-    if back > COMES_BACK and _is_quiet(case, index):
-        yield (
-            f"{where}: in motion of {middle:.3g} Hz waves in the rock are {speed:.3g} times as fast as "
-            f"the moduli of the case say, by which quiet surfaces are made: {100 * back:.2g} % of a "
-            f"wave comes back; write reference: {middle:.3g}, the frequency of these moduli"
-        )
 
 
-def _is_quiet(case: Case, index: int) -> bool:
-    """Whether a surface lets waves out in a stage."""
-    begun = {None, *(stage.name for stage in case.stages[: index + 1])}
-    return any(
-        SURFACE_LAWS[entry.law].absorbs and entry.stage in begun
-        for _, entry in case.surface_entries
-    )
+def _quiet(case: Case, index: int, stage: Stage, where: str) -> Iterator[str]:
+    """Tell of quiet surfaces that were made for rock with other branches."""
+    begun = {None, *(one.name for one in case.stages[: index + 1])}
+    own = stiffer_in_waves(stage.damping.maxwell)
+    for _, entry in case.surface_entries:
+        if not SURFACE_LAWS[entry.law].absorbs or entry.stage not in begun:
+            continue
+        speed = np.sqrt(own / stiffer_in_waves(maxwell_at(case, entry.stage)))
+        back = abs(speed - 1) / (speed + 1)
+        if back > COMES_BACK:
+            yield (
+                f"{where}: waves in the rock are {speed:.3g} times as fast as in the stage in which quiet "
+                f"surfaces begin: {100 * back:.2g} % of a wave comes back from them; give both stages the "
+                "same maxwell damping"
+            )
+            return

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from cdem.model.damping import branches_of, rayleigh_factors
+from cdem.model.damping import branches_of, rayleigh_factors, stiffer_in_waves
 
 HEIGHT, ROCK = 30.0, 10.0  # of the soil, and of the rock in the model [m]
 SPEED = 1e-4  # peak of the wave [m/s]
@@ -38,6 +38,8 @@ def theory(frequency, soil, rock):
 def damped_theory(frequency, soil, rock, damping):
     """The same of damped soil and rock in the model, on rock without damping below it.
 
+    The rock below has the impedance z of the rock in the model in the middle of its band.
+
     Displacement u and shear stress t go down from the surface, where they are 1 and 0, through the
     soil, the bonds, and the rock. There the wave that comes up is (u + t / (i w z)) / 2.
 
@@ -60,7 +62,8 @@ def damped_theory(frequency, soil, rock, damping):
         c, s = np.cos(k * height), np.sin(k * height)
         u, t = u * c + t * s / (modulus * k), t * c - u * modulus * k * s
         u = u + t / bond if height == HEIGHT else u
-    return 1 / np.abs(u + t / (1j * w * rock[0] * rock[1]))
+    z = rock[0] * rock[1] * np.sqrt(stiffer_in_waves(damping.maxwell))
+    return 1 / np.abs(u + t / (1j * w * z))
 
 
 def pulse(times):
