@@ -173,6 +173,41 @@ def test_a_stage_cannot_change_a_record(said, setting, words):
     assert found.startswith("case.yaml:12:5") and "stages.1.set" in found and words in found
 
 
+BASE = """\
+boundaries:
+  - {name: base, surface: {group: rock, normal: [0, 0, -1]}, quiet: true, stage: shake,
+     input: {record: kobe, direction: [1, 0, 0]}}
+loads: {gravity: [0, 0, 0]}
+"""
+DRIVEN = """\
+loads:
+  velocities:
+    - {group: rock, velocity: [1, 0, 0], record: kobe, stage: shake}
+"""
+
+
+def test_the_record_of_a_base_must_fit_its_stage_like_others(load, tmp_path):
+    """A cut is told at the input; so is an end before the last dynamic stage begins."""
+    wave = {"duration: 20 s": "duration: 5 s", DRIVEN: BASE}
+    text = CASE
+    for old, new in wave.items():
+        text = text.replace(old, new)
+    (tmp_path / "base.yaml").write_text(text)
+    told = Case.load("base.yaml").warnings
+    assert any("base.yaml:7:6: boundaries.0.input: its record lasts 20 s" in line for line in told)
+    (tmp_path / "base.yaml").write_text(
+        text.replace(", stage: shake", "").replace("mode: static", "mode: dynamic, duration: 30 s")
+    )
+    with pytest.raises(CaseError, match=r"base.yaml:7:14: boundaries.0.input.record: is over at"):
+        Case.load("base.yaml")
+
+
+def test_a_record_that_nothing_uses_is_told(load):
+    """Its place would be forgotten in silence."""
+    told = load(DRIVEN, "loads: {gravity: [0, 0, 0]}\n").warnings
+    assert any("records.kobe: nothing uses it; write record: kobe where" in line for line in told)
+
+
 def test_warnings_name_a_motion_that_is_left_a_high_peak_and_a_cut(load):
     """Each with its place and a remedy."""
     (left,) = load().warnings
