@@ -35,9 +35,7 @@ LEAST_ROWS = 20
 """Fewest rows of a stage that can be measured."""
 YIELDS = 7
 """Accelerations between the ends of a range."""
-COLUMN = re.compile(
-    r"(.+)(?:\.(velocity|acceleration)|(\.v_base|\.v_up|\.v_down))_([xyz]) \[.*\]"
-)
+COLUMN = re.compile(r"(.+)(?:\.(velocity|acceleration)|(\.v_base|\.v_up|\.v_down))_([xyz]) \[.*\]")
 """Columns with a motion; each velocity of a boundary is a motion of its own, `base.v_up`."""
 STILL = 1e-3
 """Part of the largest velocity below which a motion along an axis is left out [1]."""
