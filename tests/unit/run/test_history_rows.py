@@ -103,6 +103,15 @@ def test_accelerations_of_a_resumed_run_have_the_same_bits(tmp_path):
     assert texts[0] == texts[1]
 
 
+@pytest.mark.parametrize(
+    ("every", "told"), [("0 s", "must be above 0"), ("1 m", "wrong dimension; use one of: s, ms")]
+)
+def test_a_wrong_time_between_rows_is_told(every, told):
+    """With its place."""
+    with pytest.raises(CaseError, match=rf"histories.0.every: .*{told}"):
+        case(entry(every=every))
+
+
 def test_an_acceleration_needs_a_group_or_a_point():
     """Bolts have none."""
     with pytest.raises(CaseError, match="acceleration needs a group or a point"):
