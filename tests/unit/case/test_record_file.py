@@ -182,7 +182,7 @@ def test_an_array_of_objects_is_not_loaded(said, tmp_path):
         ("stage: shake", "stage: rest", "7:56: loads.velocities.0.stage: would start in the static"),
         ("stage: shake", "stage: shock", "no stage 'shock'"),
         ("record: kobe", "record: kobe, history: [[0, 1]]", "give a history or a record, not both"),
-        ("velocity: [1, 0, 0]", "velocity: [0, 0, 0]", "case.yaml:7:5: loads.velocities.0: velocity [0, 0, 0] takes nothing"),
+        ("velocity: [1, 0, 0]", "velocity: [0, 0, 0]", "case.yaml:7:7: loads.velocities.0: velocity [0, 0, 0] takes nothing"),
     ],
 )  # fmt: skip
 def test_a_wrong_use_of_a_record_is_refused_with_its_place(said, old, new, words):
