@@ -19,14 +19,6 @@ def boundary_problems(case: CaseParts) -> Iterator[Problem]:
     for i, boundary in enumerate(case.boundaries):
         place = ("boundaries", i)
         yield from _stage(case, boundary, (*place, "stage"), names)
-        for k, given in enumerate(boundary.inputs):
-            if given.record not in case.records:
-                at = (k,) if isinstance(boundary.input, list) else ()
-                known = ", ".join(case.records) or "none"
-                yield (
-                    (*place, "input", *at, "record"),
-                    f"no record '{given.record}'; the case has: {known}",
-                )
         if boundary.free_field is not None:
             yield from _base(case, boundary, (*place, "free_field", "base"))
 

@@ -9,12 +9,12 @@ from pathlib import Path
 from typing import Any
 
 from cdem.case.boundary_checks import boundary_problems
-from cdem.case.curve_times import last_dynamic, least_time, over_early, timed
+from cdem.case.curve_times import last_dynamic, least_time, over_early, record_users, timed
 from cdem.case.input_file import is_file
 from cdem.case.laws import BLOCK_LAWS, SURFACE_LAWS, block_contradiction
 from cdem.case.map_system import why_not
 from cdem.case.plausible import doubts
-from cdem.case.record_checks import record_contradictions, record_users
+from cdem.case.record_checks import record_contradictions
 from cdem.case.schema import CaseParts, Stage
 from cdem.case.softening import softening_problems
 from cdem.case.surface_schema import surface_groups

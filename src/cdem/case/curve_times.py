@@ -23,6 +23,17 @@ def timed(case: CaseParts) -> Iterator[tuple[Keys, Timed]]:
             yield ("water", "reservoir"), case.water.reservoir
 
 
+def record_users(case: CaseParts) -> Iterator[tuple[Keys, str, str | None]]:
+    """Every place of a case that uses a record: the entry, the record, and the stage named."""
+    for i, driven in enumerate(case.loads.velocities):
+        if driven.record is not None:
+            yield ("loads", "velocities", i), driven.record, driven.stage
+    for i, boundary in enumerate(case.boundaries):
+        for k, given in enumerate(boundary.inputs):
+            at = (k,) if isinstance(boundary.input, list) else ()
+            yield ("boundaries", i, "input", *at), given.record, boundary.stage
+
+
 def last_dynamic(stages: Sequence[Stage]) -> int:
     """Number of the last dynamic stage; -1 where there is none."""
     return max((i for i, stage in enumerate(stages) if stage.mode == "dynamic"), default=-1)
@@ -87,6 +98,6 @@ def _varying(case: CaseParts, stage: str | None) -> Iterator[tuple[Keys, str, fl
             last = max((i for i, row in enumerate(rows) if row[1] != rows[-1][1]), default=-1)
             if entry.stage == stage and last >= 0:
                 yield keys, key, rows[last + 1][0]
-        name = getattr(entry, "record", None)
-        if name in case.records and entry.stage == stage:
+    for keys, name, begin in record_users(case):
+        if name in case.records and begin == stage:
             yield keys, "record", case.records[name].duration

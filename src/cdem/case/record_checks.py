@@ -5,7 +5,7 @@ from __future__ import annotations
 import difflib
 from collections.abc import Iterable, Iterator
 
-from cdem.case.curve_times import timed
+from cdem.case.curve_times import record_users
 from cdem.case.schema import CaseParts
 from cdem.case.waves_schema import Record
 from cdem.seismic.measures import Measures, arias, measures
@@ -24,14 +24,6 @@ CUT = 0.001
 """Part of the Arias intensity that a stage may cut off in silence [1]."""
 
 
-def record_users(case: CaseParts) -> Iterator[tuple[Keys, str, str | None]]:
-    """Every place of a case that uses a record: the entry, the record, and the stage named."""
-    for keys, entry in timed(case):
-        name = getattr(entry, "record", None)
-        if name is not None:
-            yield keys, name, entry.stage
-
-
 def record_contradictions(case: CaseParts) -> Iterator[Problem]:
     """Bands that do not fit their records, and records that do not fit their places."""
     for name, record in case.records.items():
@@ -40,7 +32,7 @@ def record_contradictions(case: CaseParts) -> Iterator[Problem]:
     for keys, name, stage in record_users(case):
         if name not in case.records:
             yield (*keys, "record"), _unknown(name, case.records)
-        if why := _static(case, stage):
+        if keys[0] == "loads" and (why := _static(case, stage)):
             yield (*keys, "record" if stage is None else "stage"), why
 
 
@@ -65,7 +57,12 @@ def _static(case: CaseParts, stage: str | None) -> str:
 def record_doubts(case: CaseParts) -> tuple[list[Problem], list[Problem]]:
     """Impossible and unusual records: path and message."""
     impossible: list[Problem] = []
-    unusual: list[Problem] = []
+    used = {name for _, name, _ in record_users(case)}
+    unusual: list[Problem] = [
+        (("records", name), f"nothing uses it; write record: {name} where it should act")
+        for name in case.records
+        if name not in used
+    ]
     for name, record in case.records.items():
         if record.band_fault:
             continue  # cannot be filtered

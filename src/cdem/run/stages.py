@@ -8,9 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cdem.case.case import Case
-from cdem.case.curve_times import last_change, last_dynamic, over_early
+from cdem.case.curve_times import last_change, last_dynamic, over_early, record_users
 from cdem.case.laws import INTERFACE_LAWS
-from cdem.case.record_checks import record_users
 from cdem.case.schema import Release, Stage
 from cdem.errors import CaseError
 from cdem.model.backfill import folded, nodes_of_groups, places

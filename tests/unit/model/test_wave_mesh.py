@@ -58,6 +58,18 @@ def test_directions_in_which_a_group_is_fixed_do_not_count():
     assert row["edge"] == pytest.approx(0.25)
 
 
+@pytest.mark.parametrize(("components", "told"), [("xyz", []), ("xy", ["a"])])
+def test_a_table_whose_nodes_are_all_driven_has_no_waves(components, told):
+    """It moves as a rigid body, however coarse it is."""
+    driven = {"group": "a", "velocity": [1, 0, 0], "components": list(components)}
+    blast = TOP | {"pressure": {"peak": 1e6, "rise": 2e-2, "fall": 4e-2}}
+    box = {"size": [1, 1, 1], "divisions": [2, 2, 2]}
+    stages = [{"name": "run", "mode": "dynamic", "duration": 1e-3}]
+    shaken = case([{"group": "a", "box": box}], {"a": {}}, stages=stages,
+                  loads={"blasts": [blast], "velocities": [driven]})  # fmt: skip
+    assert [row["group"] for row in Simulation(shaken, threads=1).audit.wave_mesh] == told
+
+
 def test_a_coarse_mesh_is_told_and_a_coarser_one_refused():
     per = np.pi * SPEED / 0.5  # elements a second of rise
     (told,) = [
