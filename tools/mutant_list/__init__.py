@@ -26,11 +26,12 @@ from mutant_list import (
     package,
     run,
     screening,
+    seismic,
     study,
 )
 from mutant_list.mutant import Mutant
 
-PYTHON = [package, case, mesh, joints, model, run, output, study, screening]
+PYTHON = [package, case, mesh, joints, model, run, output, study, screening, seismic]
 CORE = [
     bindings,
     core_rest,

@@ -62,6 +62,11 @@ class PrescribedVelocity(Factored):
         exactly_one(self, ("group", "surface", "point", "box"))
         if self.record is not None and self.history is not None:
             raise ValueError("give a history or a record, not both")
+        if self.record is not None and not any(self.velocity):
+            raise ValueError(
+                "velocity [0, 0, 0] takes nothing of the record; write the factors of its motion along "
+                "x, y, z, e.g. [1, 0, 0]"
+            )
         return self
 
 

@@ -57,7 +57,12 @@ def _static(case: CaseParts, stage: str | None) -> str:
 def record_doubts(case: CaseParts) -> tuple[list[Problem], list[Problem]]:
     """Impossible and unusual records: path and message."""
     impossible: list[Problem] = []
-    unusual: list[Problem] = []
+    used = {name for _, name, _ in record_users(case)}
+    unusual: list[Problem] = [
+        (("records", name), f"nothing uses it; write record: {name} where it should act")
+        for name in case.records
+        if name not in used
+    ]
     for name, record in case.records.items():
         if record.band_fault:
             continue  # cannot be filtered

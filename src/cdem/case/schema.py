@@ -472,6 +472,12 @@ class CaseParts(Part):
                 entries.append((("boundaries", i), boundary.dashpots))
         return entries
 
+    @property
+    def acts_on_faces(self) -> bool:
+        """Whether there are such entries."""
+        absorbing = any(boundary.absorbs for boundary in self.boundaries)
+        return bool(self.loads.surfaces or self.loads.blasts) or absorbing
+
     def surface_name(self, keys: Keys) -> str:
         """Name of an entry that acts on faces, for reports: its own, or its place in the case."""
         if keys[0] == "boundaries":

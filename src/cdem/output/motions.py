@@ -35,6 +35,8 @@ LEAST_ROWS = 20
 """Fewest rows of a stage that can be measured."""
 YIELDS = 7
 """Accelerations between the ends of a range."""
+COLUMN = re.compile(r"(.+)(?:\.(velocity|acceleration)|(\.v_base|\.v_up|\.v_down))_([xyz]) \[.*\]")
+"""Columns with a motion; each velocity of a boundary is a motion of its own, `base.v_up`."""
 STILL = 1e-3
 """Part of the largest velocity below which a motion along an axis is left out [1]."""
 SILENT = 1e-2
@@ -242,10 +244,10 @@ def _motions(columns: dict[str, Floats], rows: NDArray[np.intp]) -> Iterable[Mot
     """Motions of the histories that have some, at even times."""
     found: dict[str, dict[str, dict[str, Floats]]] = {}
     for column, values in columns.items():
-        match = re.fullmatch(r"(.+)\.(velocity|acceleration)_([xyz]) \[.*\]", column)
+        match = COLUMN.fullmatch(column)
         if match:
-            kinds = found.setdefault(match[1], {}).setdefault(match[3], {})
-            kinds[match[2]] = values[rows]
+            name, kind, axis = match[1] + (match[3] or ""), match[2] or "velocity", match[4]
+            found.setdefault(name, {}).setdefault(axis, {})[kind] = values[rows]
     time = columns["time [s]"][rows]
     step = float(np.median(np.diff(time)))
     even = time[0] + step * np.arange(int((time[-1] - time[0]) / step * (1 + 1e-9)) + 1)

@@ -51,8 +51,10 @@ class Changes:
         """Report the changes, one line for each value.
 
         Raises:
-            CaseError: A change is not allowed, and it is not forced.
+            CaseError: A change is not allowed, and it is not forced; or a record changes.
         """
+        if records := [one for one in self.refused if one[0].startswith("records.")]:
+            raise CaseError("\n".join(_of_record(case, *one) for one in records))
         if self.refused and not force:
             raise CaseError(
                 "\n".join(
@@ -64,12 +66,6 @@ class Changes:
                 "output.every. Set other values back, continue with --force, or run the case "
                 "again in another folder (-o)"
             )
-        for path, _, _ in self.refused:
-            if path.startswith("records."):
-                raise CaseError(
-                    f"{case.where(path)}: {path}: cannot change, even with --force: a resumed run "
-                    "goes on with the processed record of its begin"
-                )
         lines = [f"{path} changes from {then} to {now}" for path, then, now in self.allowed]
         return lines + [
             f"{path} changes from {then} to {now} in the middle of the run (--force)"
@@ -100,6 +96,17 @@ def compare(then: dict[str, Any], now: dict[str, Any], begun: int) -> Changes:
         allowed = later or path in FREE or end in ENDS
         (found.allowed if allowed else found.refused).append((path, a, b))
     return found
+
+
+def _of_record(case: Case, path: str, then: Any, now: Any) -> str:
+    """Why a resumed run cannot change a record; samples are too long to show."""
+    what = f"is {now}, but the run was begun with {then}"
+    if path.endswith(".samples"):
+        what = "are not those that the run was begun with"
+    return (
+        f"{case.where(path)}: {path}: {what}; a resumed run goes on with the processed record of its "
+        "begin, so --force does not help: set it back, or run the case again in another folder (-o)"
+    )
 
 
 def _short(value: Any) -> str:

@@ -39,7 +39,7 @@ ENERGY_TERMS = [
 
 def terms_of(case: Case) -> list[EnergyTerm]:
     """The terms in the files of a case."""
-    absent = set() if case.surface_entries else set(OF_SURFACES)
+    absent = set() if case.acts_on_faces else set(OF_SURFACES)
     if not any(boundary.free_field for boundary in case.boundaries):
         absent.add("columns")
     return [term for term in ENERGY_TERMS if term.name not in absent]

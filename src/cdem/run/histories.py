@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from functools import partial
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,13 +18,26 @@ FORCES = {"force": "node.reaction", "water_force": "node.water", "surface_force"
 """Arrays of the core with forces on nodes; force is that of supports, as at a loading plate."""
 
 
-def tracks(sim: RunState) -> list[tuple[str, Any]]:
-    """Column name and value of every quantity in the case's histories."""
+@dataclass(frozen=True)
+class Track:
+    """Columns of a quantity in a history.
+
+    Attributes:
+        names: Of the columns.
+        values: Their values now.
+    """
+
+    names: list[str]
+    values: Callable[[], Sequence[float] | NDArray[np.float64]]
+
+
+def tracks(sim: RunState) -> list[Track]:
+    """The columns of every quantity in the case's histories."""
     units = {
         "centroid": "m", "displacement": "m", "velocity": "m/s", "acceleration": "m/s2",
         "force": "N", "water_force": "N", "surface_force": "N",
     }  # fmt: skip
-    out: list[tuple[str, Any]] = []
+    out: list[Track] = []
     position = sim.build.start_position
     for entry in sim.case.histories:
         if entry.bolt is not None:
@@ -41,20 +54,20 @@ def tracks(sim: RunState) -> list[tuple[str, Any]]:
         for quantity in entry.quantities:
             if quantity == "energy":
                 name = f"{entry.name}.kinetic_energy [J]"
-                out.append((name, lambda n=nodes: _kinetic(sim, n)))
+                out.append(Track([name], partial(_kinetic, sim, nodes)))
                 continue
             of_time = partial(_value, sim, quantity, nodes)
             if quantity == "acceleration":
                 of_time = partial(_acceleration, sim, entry.name, nodes)
-            for axis in range(3):
-                name = f"{entry.name}.{quantity}_{'xyz'[axis]} [{units[quantity]}]"
-                out.append((name, lambda values=of_time, a=axis: values()[a]))
+            out.append(Track(_names(entry.name, quantity, units[quantity]), of_time))
     return out
 
 
-def _of_boundary(
-    sim: RunState, name: str, boundary: str, quantities: Sequence[str]
-) -> list[tuple[str, Any]]:
+def _names(history: str, quantity: str, unit: str) -> list[str]:
+    return [f"{history}.{quantity}_{axis} [{unit}]" for axis in "xyz"]
+
+
+def _of_boundary(sim: RunState, name: str, boundary: str, quantities: Sequence[str]) -> list[Track]:
     """Motion of a boundary, the wave that comes in there, and the one that leaves: base less up."""
     place = next(p for p in sim.build.boundaries.places if p.boundary.name == boundary)
 
@@ -65,9 +78,7 @@ def _of_boundary(
         return {"v_base": base, "v_up": up, "v_down": base - up}[quantity]
 
     return [
-        (f"{name}.{quantity}_{'xyz'[axis]} [m/s]", lambda q=quantity, a=axis: wave(q)[a])
-        for quantity in quantities
-        for axis in range(3)
+        Track(_names(name, quantity, "m/s"), partial(wave, quantity)) for quantity in quantities
     ]
 
 
@@ -102,9 +113,7 @@ def _acceleration(sim: RunState, name: str, nodes: NDArray[np.intp]) -> NDArray[
     return acceleration
 
 
-def _of_bolts(
-    sim: RunState, name: str, bolt: str, quantities: Sequence[str]
-) -> list[tuple[str, Any]]:
+def _of_bolts(sim: RunState, name: str, bolt: str, quantities: Sequence[str]) -> list[Track]:
     """Value of a bolt, or the value of largest magnitude among the bolts of an entry."""
     bolts = sim.build.bolts
     first = bolts.first
@@ -119,12 +128,12 @@ def _of_bolts(
         "plate_force": ("bolts.end_force", heads, "N"),
     }
 
-    def largest(column: str, some: NDArray[np.intp]) -> float:
+    def largest(column: str, some: NDArray[np.intp]) -> list[float]:
         values = sim.core.fields()[column][some]
-        return float(values[np.abs(values).argmax()])
+        return [float(values[np.abs(values).argmax()])]
 
     return [
-        (f"{name}.{q} [{unit}]", lambda c=column, s=some: largest(c, s))
+        Track([f"{name}.{q} [{unit}]"], partial(largest, column, some))
         for q in quantities
         for column, some, unit in [columns[q]]
     ]
@@ -142,6 +151,6 @@ def _value(sim: RunState, quantity: str, nodes: NDArray[np.intp]) -> NDArray[np.
     return (mass[:, None] * values).sum(axis=0) / mass.sum()
 
 
-def _kinetic(sim: RunState, nodes: NDArray[np.intp]) -> float:
+def _kinetic(sim: RunState, nodes: NDArray[np.intp]) -> list[float]:
     fields = sim.fields
-    return float(0.5 * (fields["mass"][nodes, None] * fields["velocity"][nodes] ** 2).sum())
+    return [float(0.5 * (fields["mass"][nodes, None] * fields["velocity"][nodes] ** 2).sum())]

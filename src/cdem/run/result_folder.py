@@ -8,7 +8,6 @@ import os
 import time
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,7 +29,7 @@ from cdem.run.energy_terms import terms_of
 from cdem.run.fields import surface_of, values_of
 from cdem.run.folder_lock import FolderLock
 from cdem.run.frame_files import FrameFiles, SurfaceFiles
-from cdem.run.histories import tracks
+from cdem.run.histories import Track, tracks
 from cdem.run.history_file import HistoryFile
 from cdem.run.law_fields import wanted_fields
 from cdem.run.record_files import write_records
@@ -98,7 +97,7 @@ class Results:
         self.frames = 0
         self._shows_stop = False
         self.notes: list[str] = []
-        self.tracks: list[tuple[str, Any]] = []
+        self.tracks: list[Track] = []
         self._history: HistoryFile
         self._volume: FrameFiles | None = None
         self._surface: SurfaceFiles | None = None
@@ -155,7 +154,7 @@ class Results:
             *(term.column for term in terms_of(sim.case)),
             "energy error", "unbalance ratio", "broken tension", "broken shear",
         ]  # fmt: skip
-        columns += [name for name, _ in self.tracks]
+        columns += [name for track in self.tracks for name in track.names]
         self._history = HistoryFile(self.folder / "histories.csv", columns, rows)
         if self._history.lost:
             self.notes.append(
@@ -203,7 +202,7 @@ class Results:
         row = [sim.time, sim.step_count]
         row += [e[term.name] for term in terms_of(sim.case)]
         row += [e["error"], sim.core.unbalance_ratio(), broken["tension"], broken["shear"]]
-        row += [value() for _, value in self.tracks]
+        row += [value for track in self.tracks for value in track.values()]
         self._history.append(row)
         if frame and self._volume is not None and self._surface is not None:
             self._record_frame(sim, self._volume, self._surface)

@@ -151,7 +151,7 @@ def even_step(times: NDArray[np.float64], where: str) -> float:
         row = int(np.argmax(off)) if step > 0 and np.isfinite(off).all() else 0
         raise CaseError(
             f"{where}: its times are not evenly spaced (row {row + 1}: {times[row]:g} s); "
-            "interpolate it to an even step, or give one column of values and step:"
+            "interpolate it to an even step, or give one column of values, and its step in the case"
         )
     return step
 

@@ -102,7 +102,11 @@ def _run(case: Case, task: dict[str, Any], folder: Path, tell: Tell) -> dict[str
     return {
         "status": status,
         "summary": simulation.summary(status),
-        "histories": {name: value() for name, value in tracks(simulation)},
+        "histories": {
+            name: float(value)
+            for track in tracks(simulation)
+            for name, value in zip(track.names, track.values(), strict=True)
+        },
     }
 
 

@@ -111,6 +111,33 @@ def test_a_wrong_record_is_refused_with_its_place(said, new, words):
     assert words in found and len(found.splitlines()) == 1 and found.startswith("case.yaml:9:")
 
 
+def test_a_velocity_too_high_for_a_record_is_refused_or_told(said, load, tmp_path):
+    """A slow sine, whose acceleration is low."""
+    rows = "".join(f"{0.05 * i!r}, {float(np.sin(0.0125 * i))!r}\n" for i in range(1000))
+    (tmp_path / "slow.csv").write_text("time [s], v [m/s]\n" + rows)
+    assert "records.kobe: its velocity reaches 11 m/s, above 10 m/s; look at its unit" in said(
+        "kobe.at2", "slow.csv, scale: 11"
+    )
+    told = load("kobe.at2", "slow.csv, scale: 4").warnings
+    assert any("its velocity reaches 4 m/s, above 3 m/s, which is rare" in line for line in told)
+
+
+@pytest.mark.parametrize(
+    ("value", "words"),
+    [("nan", "sample 5 is nan; a record has numbers only"), ("x", "f.csv:6: '0.04, x' is not a row"),
+     ("1\n0.05, 2\n0.06, 3\n0.077, 9", "its times are not evenly spaced (row")],
+)  # fmt: skip
+def test_a_wrong_sample_is_told_with_the_places_in_case_and_file(said, tmp_path, value, words):
+    """The case says which file, the file which row."""
+    rows = "".join(f"{0.01 * i:.2f}, {i + 1}\n" for i in range(4)) + f"0.04, {value}\n"
+    tail = "" if "\n" in value else "".join(f"{0.01 * i:.2f}, {i}\n" for i in range(5, 20))
+    head, more = "time [s], a [m/s2]\n", "0.08, 1\n0.09, 1\n0.10, 1\n"
+    (tmp_path / "f.csv").write_text(head + rows + (tail or more))
+    found = said("kobe.at2", "f.csv")
+    assert found.startswith("case.yaml:9:10: records.kobe.file: f.csv") and words in found
+    assert len(found.splitlines()) == 1
+
+
 def test_a_file_without_a_unit_is_refused_with_the_list_of_units(said, tmp_path):
     """There is no default."""
     rows = "".join(f"{0.01 * i:.2f} {i % 7 - 3}\n" for i in range(100))
@@ -155,6 +182,7 @@ def test_an_array_of_objects_is_not_loaded(said, tmp_path):
         ("stage: shake", "stage: rest", "7:56: loads.velocities.0.stage: would start in the static"),
         ("stage: shake", "stage: shock", "no stage 'shock'"),
         ("record: kobe", "record: kobe, history: [[0, 1]]", "give a history or a record, not both"),
+        ("velocity: [1, 0, 0]", "velocity: [0, 0, 0]", "case.yaml:7:7: loads.velocities.0: velocity [0, 0, 0] takes nothing"),
     ],
 )  # fmt: skip
 def test_a_wrong_use_of_a_record_is_refused_with_its_place(said, old, new, words):
@@ -171,6 +199,41 @@ def test_a_stage_cannot_change_a_record(said, setting, words):
     """Its curve has begun, or is stored."""
     found = said("duration: 20 s", f"duration: 20 s, set: {{{setting}}}")
     assert found.startswith("case.yaml:12:5") and "stages.1.set" in found and words in found
+
+
+BASE = """\
+boundaries:
+  - {name: base, surface: {group: rock, normal: [0, 0, -1]}, quiet: true, stage: shake,
+     input: {record: kobe, direction: [1, 0, 0]}}
+loads: {gravity: [0, 0, 0]}
+"""
+DRIVEN = """\
+loads:
+  velocities:
+    - {group: rock, velocity: [1, 0, 0], record: kobe, stage: shake}
+"""
+
+
+def test_the_record_of_a_base_must_fit_its_stage_like_others(load, tmp_path):
+    """A cut is told at the input; so is an end before the last dynamic stage begins."""
+    wave = {"duration: 20 s": "duration: 5 s", DRIVEN: BASE}
+    text = CASE
+    for old, new in wave.items():
+        text = text.replace(old, new)
+    (tmp_path / "base.yaml").write_text(text)
+    told = Case.load("base.yaml").warnings
+    assert any("base.yaml:7:6: boundaries.0.input: its record lasts 20 s" in line for line in told)
+    (tmp_path / "base.yaml").write_text(
+        text.replace(", stage: shake", "").replace("mode: static", "mode: dynamic, duration: 30 s")
+    )
+    with pytest.raises(CaseError, match=r"base.yaml:7:14: boundaries.0.input.record: is over at"):
+        Case.load("base.yaml")
+
+
+def test_a_record_that_nothing_uses_is_told(load):
+    """Its place would be forgotten in silence."""
+    told = load(DRIVEN, "loads: {gravity: [0, 0, 0]}\n").warnings
+    assert any("records.kobe: nothing uses it; write record: kobe where" in line for line in told)
 
 
 def test_warnings_name_a_motion_that_is_left_a_high_peak_and_a_cut(load):

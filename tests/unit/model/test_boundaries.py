@@ -71,6 +71,23 @@ def test_nodes_of_boundaries_are_held_in_a_later_static_stage():
     assert np.abs(sim.fields["position"][base] - there).max() < 1e-9
 
 
+@pytest.mark.parametrize(("direction", "fits"), [([1, 0, 0], True), ([1, 1, 0], False)])
+def test_a_wave_along_an_axis_that_is_held_is_refused(direction, fits):
+    """As in a slice that is held along y; the rest of the direction fits."""
+    wave = {"samples": [0, 1, 2, 1, 0, -1, -2, -1, 0, 1, 0], "unit": "m/s", "step": 0.01,
+            "scale": 0.01}  # fmt: skip
+    base = quiet("base", *DOWN, input={"record": "k", "direction": direction})
+    slice_ = case(BLOCKS, {"a": {"fix": ["y"]}}, rock=ROCK, stages=STAGES[1:2], boundaries=[base],
+                  records={"k": wave}, waves={"allow_coarse": True})  # fmt: skip
+    if fits:
+        cdem.Simulation(slice_, threads=1)
+        return
+    with pytest.raises(
+        CaseError, match=r"boundaries\.0: the wave of k comes in along y, .* remove"
+    ):
+        cdem.Simulation(slice_, threads=1)
+
+
 def test_the_number_of_supports_stays():
     sim = cdem.Simulation(model(quiet("base", *DOWN), quiet("east", *EAST)), threads=1)
     b = sim.build

@@ -72,6 +72,15 @@ def test_tables_hold_spectra_slips_and_ratios(run):
     assert any("Newmark slip" in line for line in found.lines())
 
 
+def test_waves_of_a_boundary_are_motions_to_compare_with(run):
+    """The transfer function to the wave that comes in."""
+    text = (run / "histories.csv").read_text()
+    (run / "histories.csv").write_text(text.replace("low.velocity", "low.v_up"))
+    found = measure(run, to="low.v_up", yields=[], stage=None)
+    assert [motion.name for motion in found.motions] == ["low.v_up", "top"]
+    assert "top-over-low.v_up.csv" in [path.name for path in found.write(run)]
+
+
 def test_motions_are_drawn(run):
     """A picture for each history."""
     pytest.importorskip("matplotlib")

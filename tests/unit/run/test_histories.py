@@ -23,7 +23,11 @@ def test_columns_of_a_box_in_free_flight():
         ],
     )
     sim.step(3)
-    row = {name: value() for name, value in tracks(sim)}
+    row = {
+        name: value
+        for track in tracks(sim)
+        for name, value in zip(track.names, track.values(), strict=True)
+    }
     way = sim.time * velocity
     expected = {"all.kinetic_energy [J]": 0.5 * 6 * 2500 * 21.0}
     for axis, start, moved, speed in zip("xyz", (0.5, 1, 1.5), way, velocity, strict=True):

@@ -6,6 +6,7 @@ from shared.signals import synthetic
 
 from cdem import Case, CaseError, Simulation
 from cdem.output.reader import read_histories
+from cdem.run.stages import row_every
 
 STAGES = [{"name": "fall", "mode": "dynamic", "duration": 0.2}]
 
@@ -64,6 +65,17 @@ def test_a_record_that_acts_gives_its_own_step_to_the_rows(tmp_path):
     np.testing.assert_allclose(steps[-49:-1], 0.002, atol=1.1e-4)
 
 
+def test_the_record_of_a_base_gives_its_step_too():
+    """As one of driven nodes."""
+    record = {"samples": synthetic(duration=0.2)[1], "unit": "m/s2", "step": 0.002}
+    base = {"name": "base", "surface": {"group": "rock", "normal": [0, 0, -1]}, "quiet": True,
+            "stage": "shake", "input": {"record": "k", "direction": [1, 0, 0]}}  # fmt: skip
+    stages = [*STAGES, {"name": "shake", "mode": "dynamic", "duration": 0.2}]
+    shaken = case(entry(), stages=stages, records={"k": record}, boundaries=[base])
+    assert row_every(shaken, 0, 0.05) == 0.005
+    assert row_every(shaken, 1, 0.05) == 0.002
+
+
 def test_an_acceleration_is_the_change_of_velocity_since_the_row_before(tmp_path):
     """Free fall: -10 m/s2, 0 in the first row; times the row it gives the velocity to the bit."""
     Simulation(case(entry()), output=tmp_path / "out").run()
@@ -89,6 +101,15 @@ def test_accelerations_of_a_resumed_run_have_the_same_bits(tmp_path):
     Simulation(whole, output=tmp_path / "cut", resume=True).run()
     texts = [(tmp_path / name / "histories.csv").read_bytes() for name in ("whole", "cut")]
     assert texts[0] == texts[1]
+
+
+@pytest.mark.parametrize(
+    ("every", "told"), [("0 s", "must be above 0"), ("1 m", "wrong dimension; use one of: s, ms")]
+)
+def test_a_wrong_time_between_rows_is_told(every, told):
+    """With its place."""
+    with pytest.raises(CaseError, match=rf"histories.0.every: .*{told}"):
+        case(entry(every=every))
 
 
 def test_an_acceleration_needs_a_group_or_a_point():

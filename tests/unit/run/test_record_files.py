@@ -86,15 +86,20 @@ def test_a_resumed_run_with_another_processed_record_is_refused(write, tmp_path,
 
 
 @pytest.mark.parametrize("force", [False, True])
-def test_a_resumed_run_cannot_change_its_record_even_by_force(write, force):
-    """The message is short although the samples are many."""
+@pytest.mark.parametrize("what", ["scale", "samples"])
+def test_a_resumed_run_cannot_change_its_record_even_by_force(write, tmp_path, what, force):
+    """One line with its place, although the samples are many."""
     first = Simulation(write(), output="out")
     first.run_until(0.1)
     first.checkpoint()
     first.close()
-    with pytest.raises(CaseError, match=r"case.yaml:6:\d+: records.k b.scale: ") as caught:
-        Simulation(write("scale: 0.5", "scale: 0.6"), output="out", resume=True, force=force)
-    assert len(str(caught.value)) < 600
+    name = write("scale: 0.5", "scale: 0.6" if what == "scale" else "scale: 0.5")
+    if what == "samples":
+        (tmp_path / "k.at2").write_text(at2(1.1 * synthetic(duration=1.2)[1], 0.005))
+    with pytest.raises(CaseError, match=rf"case.yaml:6:\d+: records.k b.{what}: ") as caught:
+        Simulation(name, output="out", resume=True, force=force)
+    told = str(caught.value)
+    assert "\n" not in told and len(told) < 300 and "run the case again in another folder" in told
 
 
 def test_overwriting_removes_records_of_the_run_before(write, tmp_path):

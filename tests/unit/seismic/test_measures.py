@@ -123,6 +123,12 @@ def test_slip_on_planes_under_the_synthetic_record(dip, friction, slip, turned):
     assert factor * newmark_slip(-a, 0.005, least) == pytest.approx(turned, abs=1e-5)
 
 
+def test_a_block_that_slides_at_the_end_of_a_record_comes_to_rest():
+    """1 m/s2 above the yield for 1 s, then 1 m/s that the yield of 1 m/s2 stops: half a metre each."""
+    assert newmark_slip(np.full(101, 2.0), 0.01, 1.0) == pytest.approx(1.0, rel=1e-12)
+    assert newmark_slip(np.full(101, 2.0), 0.01, 0.0) == math.inf
+
+
 def test_slip_with_stops_and_starts_inside_one_step():
     """A zigzag of samples every 0.5 s gives the slip of the same lines every 0.1 ms."""
     corners = np.array([0, 3, -4, 5, -20, 4, 4, -6, 1.0, 0])
