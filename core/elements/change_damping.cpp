@@ -23,7 +23,7 @@ std::vector<Real> branch_energy(const Model& m, const State& s, const ElementSet
   return energy;
 }
 
-/// Let elements forget what their damping remembers, or remember nothing yet.
+/// Room for what the damping of elements remembers: as it was, or nothing yet.
 template <class Shape>
 void make_room(const Model& m, const ElementSet& e, ElementState& es) {
   es.branch.resize(m.maxwell.any() ? std::size_t(RockDamping<Shape>::branch_rows) * e.stride : 0);

@@ -13,8 +13,8 @@ inline bool damps_rock(const Model& m) { return m.maxwell.any() || m.damping_tim
 /// Moduli of the rock over those of its materials.
 inline Real moduli_part(const State& s) { return s.moduli.size() > 0 ? on_host(s.moduli)[0] : 1; }
 
-/// Give the rock other branches and dashpots. New ones begin without stress; what is stored in
-/// branches that end is lost, and booked as damping.
+/// Give the rock other branches and dashpots. Branches in place of branches keep the strains of
+/// their springs; those in place of none begin without. What they store less is booked as damping.
 void change_damping(Model& model, State& state, const MaxwellBranches& maxwell, Real damping_time);
 
 /// Give the rock moduli of this part of those of its materials; stresses stay. The energy stored at

@@ -158,23 +158,26 @@ def test_damped_rock_has_the_same_bits_on_all_threads(damping):
 
 @KINDS
 @pytest.mark.parametrize("shape", ["tet4", "wedge6", "hex8"])
-def test_a_bar_that_is_turned_moves_and_loses_as_before(damping, shape):
+@pytest.mark.parametrize("bonds", [False, True], ids=["whole", "bonds"])
+def test_a_bar_that_is_turned_moves_and_loses_as_before(damping, shape, bonds):
     """By 90 degrees about z; to round-off of positions of 4 m. The order of nodes may differ."""
     quarter = np.array([[0, -1, 0], [1, 0, 0], [0, 0, 1]])
     found = []
     for turned in (0, 90):
-        sim = cdem.Simulation(bar(damping, shape, turned=turned), threads=1)
+        sim = cdem.Simulation(bar(damping, shape, turned=turned, bonds=bonds), threads=1)
         back = quarter if turned else np.eye(3)
-        place = sim.fields["position"] @ back
-        wave = 0.1 * np.sin(place @ [[3, 1, 2], [2, 4, 1], [1, 2, 5]])
+        place, block = sim.fields["position"] @ back, sim.build.topology.node_block
+        middle = np.stack([np.bincount(block, x) / np.bincount(block) for x in place.T], 1)[block]
+        wave = 0.1 * np.sin((place + 0.3 * middle) @ [[3, 1, 2], [2, 4, 1], [1, 2, 5]])
         rows_of(sim.core, "node.motion").velocity[:] = wave @ back.T
         sim.step(400)
-        order = np.lexsort(np.round(place, 6).T)
+        order = np.lexsort(np.round(np.hstack([place, middle]), 6).T)
         found.append(((sim.fields["displacement"] @ back)[order], sim.energies["damping"]))
     (before, lost), (after, lost_turned) = found
-    assert np.abs(before).max() > 1e-4
-    assert np.abs(after - before).max() < 4e-14
-    assert lost_turned == pytest.approx(lost, rel=1e-9)
+    assert np.abs(before).max() > 1e-5
+    # reached 6e-15, and 1.4e-12 with dashpots of bonds of tets
+    assert np.abs(after - before).max() < (1e-11 if bonds else 4e-14)
+    assert lost_turned == pytest.approx(lost, rel=1e-8 if bonds else 1e-9)
 
 
 SHAKEN = [
@@ -199,6 +202,22 @@ def shaken():
         ],
     }  # fmt: skip
     return bar(None, bonds=True, stages=SHAKEN, loads=loads, output={"frames": False})
+
+
+def test_branches_go_on_in_a_stage_with_the_same():
+    """Two stages move as one of both lengths, to the bit."""
+
+    def ringing(*durations):
+        stages = [{"name": f"s{i}", "mode": "dynamic", "duration": duration, "damping": MAXWELL}
+                  for i, duration in enumerate(durations)]  # fmt: skip
+        sim = cdem.Simulation(bar(None, stages=stages), threads=1)
+        strike(sim)
+        sim.run()
+        return sim
+
+    halves, whole = ringing(0.02, 0.02), ringing(0.04)
+    np.testing.assert_array_equal(halves.fields["position"], whole.fields["position"])
+    assert halves.energies["error"] == whole.energies["error"]
 
 
 def test_damping_that_comes_and_goes_keeps_stress_and_energy():

@@ -31,8 +31,8 @@ FAULTS = [
         "columns",
         "columns of histories in the order z y x",
         "src/cdem/run/histories.py",
-        "{entry.name}.{quantity}_{'xyz'[axis]}",
-        "{entry.name}.{quantity}_{'zyx'[axis]}",
+        'for axis in "xyz"]',
+        'for axis in "zyx"]',
         "tests/unit/run/test_histories.py",
     ),
     Mutant(
