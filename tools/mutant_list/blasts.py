@@ -1,0 +1,156 @@
+"""Faults in blasts, in the look at waves in the mesh, and in what is told of both afterwards."""
+
+from mutant_list.mutant import Mutant
+
+PULSES = "tests/unit/case/test_blast_pulses.py"
+SCHEMA = "tests/unit/case/test_blasts_schema.py"
+HOLES = "tests/unit/model/test_blasts.py"
+MESH = "tests/unit/model/test_wave_mesh.py"
+FIELDS = "tests/unit/run/test_fields.py"
+FAULTS = [
+    Mutant(
+        "rise as a constant",
+        "the time of the peak taken for the time constant of the rise",
+        "src/cdem/case/blast_pulses.py",
+        "    second = second_time(rise, fall)",
+        "    second = rise",
+        PULSES,
+    ),
+    Mutant(
+        "kept suction",
+        "the negative part of a pulse of Friedlander always acts",
+        "src/cdem/case/blast_pulses.py",
+        "    if suction:",
+        "    if not suction or suction:",
+        PULSES,
+    ),
+    Mutant(
+        "before the blast",
+        "a pulse that begins with a jump presses before its blast goes off",
+        "src/cdem/case/blast_pulses.py",
+        "[(rows[0][0], 0.0), (rows[0][0] + jump, rows[0][1]), *rows[1:]]",
+        "list(rows)",
+        PULSES,
+    ),
+    Mutant(
+        "twice the frequency",
+        "highest frequency of a pulse by its half rise",
+        "src/cdem/case/blast_pulses.py",
+        "        return 1 / (math.pi * rise)",
+        "        return 2 / (math.pi * rise)",
+        PULSES,
+    ),
+    Mutant(
+        "all holes at once",
+        "the delay of a blast is ignored",
+        "src/cdem/case/blasts_schema.py",
+        "[(t + self.delay, p) for t, p in self.pressure.rows]",
+        "list(self.pressure.rows)",
+        SCHEMA,
+    ),
+    Mutant(
+        "square of the decoupling",
+        "the pressure of a decoupled charge falls with the square of its diameter",
+        "src/cdem/case/blasts_schema.py",
+        "EXPONENT = 2.4",
+        "EXPONENT = 2.0",
+        SCHEMA,
+    ),
+    Mutant(
+        "signed table",
+        "a table of suction has no peak",
+        "src/cdem/case/blasts_schema.py",
+        "return max(abs(p) for _, p in self.table)",
+        "return max(p for _, p in self.table)",
+        SCHEMA,
+    ),
+    Mutant(
+        "whole hole at once",
+        "all rings of a hole are loaded when the detonation begins",
+        "src/cdem/model/blasts.py",
+        "[(time + late, factor) for time, factor in item.history]",
+        "item.history",
+        HOLES,
+    ),
+    Mutant(
+        "end of the hole",
+        "faces along the hole count as faces around it",
+        "src/cdem/model/blast_doubts.py",
+        "    bent = angle > FLAT",
+        "    bent = angle >= 0",
+        HOLES,
+    ),
+    Mutant(
+        "from the wall",
+        "distance of quiet faces from the wall of a hole in place of its axis",
+        "src/cdem/model/blast_doubts.py",
+        "for point in some) + radius",
+        "for point in some)",
+        HOLES,
+    ),
+    Mutant(
+        "waves of p",
+        "wave lengths of S waves by the speed of P waves",
+        "src/cdem/model/wave_mesh.py",
+        "    shear = rock.young_modulus / (2 * (1 + rock.poisson_ratio))",
+        "    shear = rock.young_modulus * (1 - rock.poisson_ratio)"
+        " / ((1 + rock.poisson_ratio) * (1 - 2 * rock.poisson_ratio))",
+        MESH,
+    ),
+    Mutant(
+        "shortest edge",
+        "waves judged by the shortest edge of an element",
+        "src/cdem/model/wave_mesh.py",
+        "return lengths(x[:, ends[:, 0]] - x[:, ends[:, 1]]).max(axis=1)",
+        "return lengths(x[:, ends[:, 0]] - x[:, ends[:, 1]]).min(axis=1)",
+        MESH,
+    ),
+    Mutant(
+        "waves along fixed axes",
+        "axes along which a group is fixed count for its waves",
+        "src/cdem/model/wave_mesh.py",
+        'np.array([axis not in group.fix for axis in "xyz"], float)',
+        "np.ones(3)",
+        MESH,
+    ),
+    Mutant(
+        "unslowed waves",
+        "bonds do not slow waves",
+        "src/cdem/model/wave_mesh.py",
+        "np.sqrt(shear / rock.density / (1 + added / volume))",
+        "np.sqrt(shear / rock.density)",
+        MESH,
+    ),
+    Mutant(
+        "last speed",
+        "the peak of a speed is its last value",
+        "core/nodes/peak_speed.hpp",
+        "if (now > peak[node.i]) peak[node.i] = now;",
+        "peak[node.i] = now;",
+        "tests/core/nodes/test_peak_speed.cpp",
+    ),
+    Mutant(
+        "squared peak",
+        "the largest speed is given as its square",
+        "src/cdem/run/fields.py",
+        "np.sqrt(squared)",
+        "np.asarray(squared)",
+        FIELDS,
+    ),
+    Mutant(
+        "peak of the run",
+        "peaks go on from an earlier dynamic stage",
+        "src/cdem/run/stages.py",
+        "        sim.core.begin_peaks()",
+        '        len(sim.core.array("node.peak")[0]) or sim.core.begin_peaks()',
+        FIELDS,
+    ),
+    Mutant(
+        "moved before",
+        "the permanent displacement of the first frame",
+        "src/cdem/output/runout.py",
+        "body.displacements(body.frames[-1])[stays]",
+        "body.displacements(body.frames[0])[stays]",
+        "tests/unit/output/test_runout_products.py",
+    ),
+]
