@@ -65,10 +65,9 @@ def charges(build: Build) -> list[Charge]:
 
 def apart(t: Topology, faces: NDArray[np.intp]) -> list[NDArray[np.intp]]:
     """Faces that share no vertex with others, each set alone."""
-    nodes = t.node_place[t.face_nodes[faces]]
-    nodes = np.where(t.face_nodes[faces] < 0, nodes[:, :1], nodes)
-    _, nodes = np.unique(nodes, return_inverse=True)
-    nodes = nodes.reshape(len(faces), -1)
+    places = t.node_place[t.face_nodes[faces]]
+    places = np.where(t.face_nodes[faces] < 0, places[:, :1], places)
+    nodes = np.unique(places, return_inverse=True)[1].reshape(places.shape)
     least = np.arange(nodes.max() + 1)  # number of the set of each vertex
     while True:
         before = least.copy()
