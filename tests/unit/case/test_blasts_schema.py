@@ -15,7 +15,7 @@ TOP = {"surface": {"group": "a", "normal": [0, 0, 1]}}
 CHARGE = {"density": "850 kg/m3", "speed": 4000, "diameter": "50 mm", "hole": "89 mm"}
 STAGES = [
     {"name": "rest", "mode": "static"},
-    {"name": "blow", "mode": "dynamic", "duration": 1e-3},
+    {"name": "blow", "mode": "dynamic", "duration": 0.1},
 ]
 
 
