@@ -15,7 +15,7 @@ from cdem.mesh.arrays import lengths
 from cdem.output.reader import read_summary
 
 Floats = NDArray[np.float64]
-HEADS = ("distance [m]", "PPV [m/s]", "charge [kg]", "scaled distance [m/kg^0.5]")
+HEADS = ("distance [m]", "PPV [m/s]", "charge [kg]", "R/sqrt(Q) [m/kg^0.5]")
 
 
 @dataclass(frozen=True)

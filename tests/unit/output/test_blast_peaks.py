@@ -51,12 +51,12 @@ def test_the_nearest_charge_of_the_stage_counts(tmp_path):
     (path,) = (path for path in found.write(tmp_path) if path.name == "ppv.csv")
     head, *rows = path.read_text().splitlines()
     assert head == (
-        "history,nearest charge,distance [m],PPV [m/s],charge [kg],scaled distance [m/kg^0.5]"
+        "history,nearest charge,distance [m],PPV [m/s],charge [kg],R/sqrt(Q) [m/kg^0.5]"
     )
     assert [row.split(",")[:2] for row in rows] == [["above", "hole2"], ["near", "hole1"]]
     assert rows[0].endswith(",,") and rows[1].endswith(",16,0.75")
     lines = found.lines()
-    assert lines[-3].split("  ")[-1] == "nearest charge" and "R/" not in lines[-3]
+    assert lines[-3].split("  ")[-1] == "nearest charge" and "R/sqrt(Q)" in lines[-3]
     assert lines[-1].split() == ["near", "3", "5.099", "16", "0.75", "hole1"]
     assert lines[-2].split() == ["above", "1.118", "2.236", "hole2"]
 
