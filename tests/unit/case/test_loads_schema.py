@@ -9,7 +9,7 @@ import pytest
         (
             "  gravity: [0, 0, -9.81]",
             "  pore_pressure: 1",
-            "loads.pore_pressure: unknown key; possible are gravity, tractions, surfaces, velocities, supports",
+            "loads.pore_pressure: unknown key; possible are gravity, tractions, surfaces, blasts, velocities, supports",
         ),
         (
             "normal: [1, 0, 0]",
