@@ -8,6 +8,7 @@
 #include "core/base/device.hpp"
 #include "core/model/column_info.hpp"
 #include "core/records/module_ports.hpp"
+#include "core/records/rules.hpp"
 
 namespace cdem {
 
@@ -21,6 +22,7 @@ struct ColumnSet {
   Index count = 0, side_count = 0;
   Column<Index> level_first;  // [column + 1]
   Column<Real> layer;         // [level] rows of 4, of the layer above it; see Layers
+  Column<Flag> bond;          // [level] 1: that layer is a bond
   Column<Real> mass;          // [level]  [kg/m2]
   Column<Real> foot;          // [column] rows of 4, see AdvanceColumns
   Column<Index> input_first, input_curve;
@@ -37,6 +39,7 @@ struct ColumnSet {
 struct ColumnState {
   using Module = Columns;
   Column<Real> displacement, before, after;  // [level] rows of 4, see ColumnMotion
+  Column<Real> branch;                       // [level] three rows of 4; empty: no Maxwell branches
   Column<Index> made;                        // [column] step of `after`, or -1
 };
 
@@ -59,8 +62,9 @@ struct Columns {
   static void start(const Model& model, cdem::State& state);
   /// Move the columns, then act on the sides.
   static void act(const Model& model, cdem::State& state, Queue queue);
-  /// Bound of the highest frequency of the columns that move, squared  [1/s2].
-  static Real frequency_squared(const Given& g);
+  /// Bound of the highest frequency of the columns that move, squared, for rock whose moduli are so
+  /// much higher in fast motion  [1/s2].
+  static Real frequency_squared(const Given& g, Real stiffer);
 
   template <class Visit>
   static void describe_rows(const Given& g, Visit&& visit) {
@@ -90,6 +94,14 @@ struct Columns {
     level("columns.before", "m/s, -", "velocity", "velocity half a step before, and a pad",
           s.before);
     level("columns.after", "m/s, -", "velocity", "velocity half a step after, and a pad", s.after);
+    visit.stored(
+        {.name = "columns.branch",
+         .unit = "1, -",
+         .meaning = "slopes of the springs of Maxwell branches in the layer above, with pads",
+         .rows = "column_levels",
+         .numbers = 4 * BranchStep::count,
+         .optional = true},
+        s.branch);
     visit.stored({.name = "columns.made",
                   .meaning = "step of the velocity after it, or -1",
                   .rows = "columns",
@@ -114,6 +126,10 @@ struct Columns {
            .parts = {"height", "modulus", "lambda", "shear_modulus"},
            .changes = Changes::with_stage},
           g.layer);
+    given({.name = "columns.bond",
+           .meaning = "1: the layer above a level is the bond of two groups",
+           .rows = "column_levels"},
+          g.bond);
     given({.name = "columns.mass",
            .unit = "kg/m2",
            .meaning = "mass of a level",

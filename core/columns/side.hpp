@@ -18,15 +18,13 @@ struct SideForces {
   const Real* part;          // [item] way from that level to the next above it  [1]
   const Real* dashpot;       // [item] row of 8: xx yy zz xy yz zx, two pads  [kg/s]
   Layers layers;
-  ColumnMotion motion;
   OutForces out;
 
   CDEM_HD void operator()(One item) const {
     Vec3<Real> f = drag(item.i);
     for (Index k = layer_first[item.i]; k < layer_first[item.i + 1]; ++k) {
       const Row rock = layers.at(layer[k]);
-      const Vec3<Real> across = stress_across(rock, level_of(motion.displacement, layer[k]),
-                                              level_of(motion.displacement, layer[k] + 1));
+      const Vec3<Real> across = layers.stress_across(layer[k]);
       // strains along x and y are zero: both normal stresses are lambda eps_zz
       const Real beside = rock.n[2] / rock.n[1] * across.z;
       const Real* n = area + std::size_t(k) * 4;
@@ -36,13 +34,11 @@ struct SideForces {
   }
 
  private:
-  CDEM_HD static Vec3<Real> level_of(const Real* rows, Index level) {
-    return Row::at(rows + std::size_t(level) * 4).vector();
-  }
   /// Mean velocity of the column in this step, at the height of the node.
   CDEM_HD Vec3<Real> mean(Index i) const {
+    const ColumnMotion& motion = layers.motion;
     const auto of = [&](Index l) {
-      return 0.5 * (level_of(motion.before, l) + level_of(motion.after, l));
+      return 0.5 * (motion.at(motion.before, l) + motion.at(motion.after, l));
     };
     const Real up = part[i];
     const Vec3<Real> low = of(level[i]);

@@ -12,9 +12,8 @@ namespace cdem {
 /// positions of one step ago: a turning block has none. What they lose is counted by the mean
 /// stress of the step on that change, which is exact for central differences.
 ///
-/// Branch j bears weight_j S(z_j); z_j is the strain of its spring, dz/dt = dE/dt - rate_j z. For E
-/// linear in the step that is z' = left_j z + share_j (E' - E), left = exp(-rate dt), share = (1 -
-/// left) / (rate dt). A dashpot bears S(time dE/dt).
+/// Branch j bears weight_j S(z_j); z_j is the strain of its spring, dz/dt = dE/dt - rate_j z, moved
+/// on by BranchStep. A dashpot bears S(time dE/dt).
 template <class Shape>
 struct RockDamping {
   static constexpr bool any = true;
@@ -28,7 +27,7 @@ struct RockDamping {
   bool ahead;          // is the state that of one step ago?
   Real dt;             // of the last step  [s]
   Real per_step;       // time of the dashpot over dt; 0 before there was a step
-  Real weight[branches], left[branches], share[branches];
+  BranchStep maxwell;
 
   /// Move on by one step: adds to the stresses, and to the forces of hourglass modes. Returns the
   /// energy lost  [J].
@@ -43,13 +42,13 @@ struct RockDamping {
     for (Index q = 0; q < Shape::points; ++q) {
       const T volume = c.point_volume.at(q, e);
       if (branch.data) {
-        Sym3<T> sum = none<T>(), less = none<T>();
+        Sym3<T> sum = none<T>();
         for (Index j = 0; j < branches; ++j) {
           const Sym3<T> before = at(branch, e, q * branches + j);
           const Sym3<T> after = next(before, change[q], j);
           set(branch, e, q * branches + j, after);
-          sum = sum + T(weight[j]) * after;
-          lost += T(0.5 * weight[j]) * volume *
+          sum = sum + T(maxwell.weight[j]) * after;
+          lost += T(0.5 * maxwell.weight[j]) * volume *
                   contract(elastic.stress(before + after), change[q] - (after - before));
         }
         stress[q] = stress[q] + elastic.stress(sum);
@@ -75,13 +74,14 @@ struct RockDamping {
     if (!branch.data) return stored;
     const ElasticConstants<T> elastic = c.elastic(e);
     Sym3<T> change[Shape::points];
+    for (Sym3<T>& none_yet : change) none_yet = none<T>();
     if (ahead) find_change(c, e, flows, p, change);
     for (Index q = 0; q < Shape::points; ++q) {
       Sym3<T> sum = none<T>();
       for (Index j = 0; j < branches; ++j) {
         Sym3<T> strain = at(branch, e, q * branches + j);
         if (ahead) strain = next(strain, change[q], j);
-        sum = sum + T(weight[j]) * strain;
+        sum = sum + T(maxwell.weight[j]) * strain;
         stored += stored_at(elastic, c.point_volume.at(q, e), strain, j);
       }
       stress[q] = stress[q] + elastic.stress(sum);
@@ -104,7 +104,7 @@ struct RockDamping {
   template <class T>
   CDEM_HD T stored_at(const ElasticConstants<T>& elastic, const T& volume, const Sym3<T>& strain,
                       Index j) const {
-    return T(0.5 * weight[j]) * volume * contract(elastic.stress(strain), strain);
+    return T(0.5 * maxwell.weight[j]) * volume * contract(elastic.stress(strain), strain);
   }
   template <class T>
   CDEM_HD static Sym3<T> none() {
@@ -123,7 +123,7 @@ struct RockDamping {
   }
   template <class T>
   CDEM_HD Sym3<T> next(const Sym3<T>& strain, const Sym3<T>& change, Index j) const {
-    return T(left[j]) * strain + T(share[j]) * change;
+    return maxwell.next<T>(strain, change, j);
   }
   /// Dashpots of the hourglass modes; returns the energy lost  [J].
   template <class I, class T = Number<I>>

@@ -31,19 +31,12 @@ template <class Shape>
 RockDamping<Shape> rock_damping(const Model& m, const State& s, const ElementSet& e,
                                 ElementState& es, bool ahead) {
   const Real dt = s.dt_last;
-  RockDamping<Shape> damping{
-      .branch = {es.branch.size() > 0 ? es.branch.data() : nullptr, e.stride},
-      .dashpot = {es.dashpot.size() > 0 ? es.dashpot.data() : nullptr, e.stride},
-      .ahead = ahead,
-      .dt = dt,
-      .per_step = dt > 0 ? m.damping_time / dt : 0};
-  for (Index j = 0; j < MaxwellBranches::count; ++j) {
-    const Real rate = m.maxwell.rate[j] * dt;
-    damping.weight[j] = m.maxwell.weight[j];
-    damping.left[j] = exp_of(-rate);
-    damping.share[j] = rate > 0 ? (1 - damping.left[j]) / rate : 1;
-  }
-  return damping;
+  return {.branch = {es.branch.size() > 0 ? es.branch.data() : nullptr, e.stride},
+          .dashpot = {es.dashpot.size() > 0 ? es.dashpot.data() : nullptr, e.stride},
+          .ahead = ahead,
+          .dt = dt,
+          .per_step = dt > 0 ? m.damping_time / dt : 0,
+          .maxwell = {m.maxwell, dt}};
 }
 
 /// Do the elements of a set remember anything for their damping?

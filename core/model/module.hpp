@@ -40,7 +40,8 @@
 //   static bool is_there(given);                   does the case have it?
 //   static std::vector<Index> row_nodes(model, state);  node of each of its rows
 //   static std::vector<NodeDashpot> dashpots(given, state);  if any, to the ground: implicit
-//   static Real frequency_squared(given);          if any: of masses of its own, at most  [1/s2]
+//   static Real frequency_squared(given, stiffer);  if any: of masses of its own, at most  [1/s2],
+//                                                 in rock with so much higher moduli
 //   static void start(model, state);               if any: its state at the start
 //   static void renew(model, state, comes);        if any: nodes with flag 1 have come in
 //   static auto stiffness_of(given);               if any: for_each_stiffness(visit):

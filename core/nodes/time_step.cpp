@@ -65,8 +65,9 @@ StepLimit step_limit(const Model& m, const State& s) {
   Real largest = highest_frequency_squared(m, s, false, limit);
   if (!(largest > 0)) largest = highest_frequency_squared(m, s, true, limit);
   Modules::for_each([&]<class Module>() {
-    if constexpr (requires { Module::frequency_squared(given_of<Module>(m)); })
-      largest = std::max(largest, Module::frequency_squared(given_of<Module>(m)));
+    if constexpr (requires { Module::frequency_squared(given_of<Module>(m), Real()); })
+      largest =
+          std::max(largest, Module::frequency_squared(given_of<Module>(m), m.maxwell.stiffer()));
   });
   // a dashpot of ratio xi at the highest frequency shortens the stable step by this factor
   const Real rayleigh =

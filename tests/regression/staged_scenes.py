@@ -147,7 +147,52 @@ stages:
      set: {loads.surfaces.2.pressure: 30 kPa}}
 """
 
-STAGED = {"soaked": SOAKED, "dug": DUG, "flowing": FLOWING, "leaving": LEAVING, "pressed": PRESSED}
+SHAKEN = """
+title: Ground in two bonded layers stands, is shaken and blasted between quiet faces and free fields
+model:
+  blocks:
+    - {group: low, box: {size: [4, 2, 2], divisions: [4, 2, 2]}}
+    - {group: top, box: {size: [4, 2, 2], divisions: [4, 2, 2], shape: tet4}, translate: [0, 0, 2]}
+    - {group: loose, box: {size: [1, 1, 1]}, translate: [1, 0.5, 4]}
+materials:
+  r: {density: 2600, poisson_ratio: 0.2, young_modulus: 0.2 GPa}
+  s: {density: 2000, poisson_ratio: 0.3, young_modulus: 0.1 GPa}
+groups: {low: {material: r}, top: {material: s}, loose: {material: s}}
+interfaces:
+  default: {friction_angle: 35, cohesion: 1 GPa, tensile_strength: 1 GPa}
+  pairs: [{between: [top, loose], friction_angle: 20, cohesion: 0, tensile_strength: 0}]
+records:
+  r: {samples: [0, 1, 3, 1, -2, -4, -1, 1, 3, 1, 0, -1, 0], step: 0.003, unit: m/s, scale: 0.05}
+waves: {allow_coarse: true}
+loads:
+  gravity: [0, 0, -9.81]
+  supports:
+    - {surface: {group: low, normal: [0, 0, -1]}, fix: [x, y, z]}
+    - {surface: {group: [low, top], normal: [-1, 0, 0]}, fix: [x]}
+    - {surface: {group: [low, top], normal: [1, 0, 0]}, fix: [x]}
+  blasts:
+    - {surface: {group: loose, normal: [1, 0, 0]}, stage: again, delay: 3 ms,
+       pressure: {peak: 0.1 MPa, rise: 1 ms, fall: 4 ms}}
+boundaries:
+  - {name: base, surface: {group: low, normal: [0, 0, -1]}, quiet: true, stage: shake,
+     input: {record: r, direction: [2, 0, 1]}}
+  - {name: west, surface: {group: [low, top], normal: [-1, 0, 0]}, free_field: {base: base}, stage: shake}
+  - {name: east, surface: {group: [low, top], normal: [1, 0, 0]}, quiet: true, stage: shake}
+stages:
+  - {name: rest, mode: static, relax: adaptive, tolerance: 0.01}
+  - {name: shake, mode: dynamic, duration: 0.04, damping: {maxwell: {ratio: 0.03, band: [2, 100]}}}
+  - {name: stand, mode: static, relax: adaptive, max_steps: 30}
+  - {name: again, mode: dynamic, duration: 0.03, damping: {rayleigh: {ratio: 0.03, frequency: 20}}}
+"""
+
+STAGED = {
+    "shaken": SHAKEN,
+    "soaked": SOAKED,
+    "dug": DUG,
+    "flowing": FLOWING,
+    "leaving": LEAVING,
+    "pressed": PRESSED,
+}
 
 
 def run_stages(name: str, threads: int) -> cdem.Simulation:

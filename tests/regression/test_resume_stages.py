@@ -230,7 +230,9 @@ def quake():
     case = on_ground(
         [box("block", [4, 4, 2], divisions=[4, 2, 2]),
          box("block", [4, 4, 2], [0, 0, 2], divisions=[4, 2, 2])],
-        [static("rest"), dynamic("shake", 0.03), static("stand", 40), dynamic("again", 0.02)],
+        [static("rest"), dynamic("shake", 0.03, damping={"maxwell": {"ratio": 0.03, "band": [2, 99]}}),
+         static("stand", 40),
+         dynamic("again", 0.02, damping={"rayleigh": {"ratio": 0.03, "frequency": 20}})],
         records={"r": {"samples": [0, 1, 3, 1, -2, -4, -1, 1, 3, 1, 0, -1, 0], "step": 0.003,
                        "unit": "m/s", "scale": 0.02}},
         waves={"allow_coarse": True},

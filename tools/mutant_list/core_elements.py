@@ -111,9 +111,9 @@ FAULTS = [
     Mutant(
         "branch decay",
         "Maxwell branches that never relax",
-        "core/elements/rock_damping.hpp",
-        "return T(left[j]) * strain + T(share[j]) * change;",
-        "return strain + T(share[j]) * change;",
+        "core/records/rules.hpp",
+        "return T(left[j]) * spring + T(share[j]) * change;",
+        "return spring + T(share[j]) * change;",
         "tests/core/elements/test_rock_damping.cpp",
     ),
     Mutant(
@@ -136,9 +136,9 @@ FAULTS = [
     Mutant(
         "branch share",
         "the change of strain in a step counts wholly, whatever relaxes within the step",
-        "core/elements/views.hpp",
-        "damping.share[j] = rate > 0 ? (1 - damping.left[j]) / rate : 1;",
-        "damping.share[j] = 1;",
+        "core/records/rules.hpp",
+        "share[j] = passed > 0 ? (1 - left[j]) / passed : 1;",
+        "share[j] = 1;",
         "tests/validation/test_damping.py::test_the_ratio_of_a_ringing_bar_is_as_asked",
     ),
     Mutant(

@@ -22,13 +22,15 @@ class Kills:
 
     Args:
         folder: Where to work.
+        case: A case file, or None for one of its own.
     """
 
-    def __init__(self, folder: Path) -> None:
+    def __init__(self, folder: Path, case: Path | None) -> None:
         self.random = random.Random()
-        self.case, self.said = folder / "case.yaml", folder / "stderr"
+        self.case, self.said = case or folder / "case.yaml", folder / "stderr"
         self.whole, self.broken = folder / "whole", folder / "broken"
-        self.case.write_text(CASE)
+        if case is None:
+            self.case.write_text(CASE)
         begun = time.perf_counter()
         status, said = in_child(lambda: self._run(self.whole), self.said)
         self.duration = time.perf_counter() - begun
@@ -75,13 +77,16 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--count", type=int, default=100, help="runs to kill")
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--case", type=Path, help="a case file, with a small checkpoint_every")
     add_option(parser)
     wants = parser.parse_args()
     state = State(
-        wants.state, [wants.count, wants.seed], dict.fromkeys(("same", "lost", "wrong"), 0)
+        wants.state,
+        [wants.count, wants.seed, *([str(wants.case)] if wants.case else [])],
+        dict.fromkeys(("same", "lost", "wrong"), 0),
     )
     if sum(state.known.values()) < wants.count:
-        kill(state, wants.count, wants.seed)
+        kill(state, wants.count, wants.seed, wants.case)
     counts = state.known
     print(
         f"{wants.count} killed runs: {counts['same']} resumed to the same bytes, {counts['lost']} had "
@@ -90,7 +95,7 @@ def main() -> None:
     sys.exit(counts["wrong"] > 0)
 
 
-def kill(state: State, count: int, seed: int) -> None:
+def kill(state: State, count: int, seed: int, case: Path | None) -> None:
     """Kill the runs that are left."""
     os.environ["OMP_NUM_THREADS"] = "1"  # a forked process has the threads of its parent's only
     import vtk  # noqa: F401  (once, not in every child)
@@ -100,7 +105,7 @@ def kill(state: State, count: int, seed: int) -> None:
     from cdem.run import simulation  # noqa: F401
 
     with tempfile.TemporaryDirectory() as place:
-        kills = Kills(Path(place).resolve())
+        kills = Kills(Path(place).resolve(), case and case.resolve())
         for number in range(sum(state.known.values()), count):
             result, why = kills.trial(f"{seed} {number}")
             state.known[result] += 1

@@ -14,6 +14,7 @@ Problem = tuple[Keys, str]  # path, problem
 def boundary_problems(case: CaseParts) -> Iterator[Problem]:
     """Contradictions between boundaries and the other parts of a case."""
     yield from _histories(case)
+    yield from _moduli(case)
     names = [stage.name for stage in case.stages]
     for i, boundary in enumerate(case.boundaries):
         place = ("boundaries", i)
@@ -47,6 +48,27 @@ def _histories(case: CaseParts) -> Iterator[Problem]:
             yield (
                 ("histories", i, "quantities"),
                 f"v_up and v_down need a quiet boundary; {boundary.name} is none",
+            )
+
+
+def _moduli(case: CaseParts) -> Iterator[Problem]:
+    """Columns keep the moduli that they begin with."""
+    names = [stage.name for stage in case.stages]
+    begin = [b.stage for b in case.boundaries if b.free_field is not None]
+    first = min(
+        (names.index(stage) if stage in names else 0 for stage in begin), default=len(names)
+    )
+    given = [
+        (i, m if (m := stage.damping.maxwell) and m.reference != "static" else None)
+        for i, stage in enumerate(case.stages)
+        if i >= first and stage.mode == "dynamic"
+    ]
+    for i, branches in given[1:]:
+        if branches != given[0][1]:
+            yield (
+                ("stages", i, "damping"),
+                f"the moduli of the ground would change after {names[given[0][0]]} (maxwell.reference), "
+                "and the columns of its free field do not; give both stages the same maxwell",
             )
 
 

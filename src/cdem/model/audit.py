@@ -27,6 +27,7 @@ from cdem.model.held import unheld_blocks
 from cdem.model.meshed_strength import meshed_strengths, strength_text
 from cdem.model.model_warnings import crowded_edges, idle_bonds, uneven_tiles, unlike_sides
 from cdem.model.options import pairs_loose_joints
+from cdem.model.rigid_bases import base_lines, rigid_bases
 from cdem.model.ruling_step import remedy, ruling_step
 from cdem.model.slips import slips
 from cdem.model.wave_mesh import highest_frequency, wave_doubts, wave_lines, wave_mesh
@@ -78,6 +79,7 @@ class Audit:
         self.frequency = highest_frequency(build.case)
         self.charges = charges(build)
         self.wave_mesh = wave_mesh(build, self.interfaces, self.frequency)
+        self.rigid_bases = rigid_bases(build, self.wave_mesh)
         self.warnings = self._warnings()
 
     # ------------------------------------------------------------------ parts
@@ -284,6 +286,7 @@ class Audit:
             **self.modules,
             "charges": [one.as_dict() for one in self.charges],
             "wave_mesh": self.wave_mesh,
+            "rigid_bases": self.rigid_bases,
             "initial_stress": self._build.initial.as_dict() if self._build.initial else None,
             "time_step": self.step,
             "records": {name: self._record(name) for name in self._build.case.records},
@@ -323,6 +326,7 @@ class Audit:
         lines += self._stiffness_text()
         lines += self._initial_text()
         lines += self._modules_text()
+        lines += base_lines(self.rigid_bases)
         lines += self._records_text()
         lines += charge_lines(self.charges)
         lines += wave_lines(self.wave_mesh, self.frequency)

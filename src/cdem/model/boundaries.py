@@ -9,9 +9,11 @@ from numpy.typing import NDArray
 
 from cdem.case.boundaries_schema import BaseInput, Boundary
 from cdem.case.case import Case
+from cdem.case.damping_schema import Maxwell
 from cdem.errors import CaseError
 from cdem.mesh.element_shapes import lame_constants
 from cdem.mesh.topology import Topology
+from cdem.model.damping import stiffer_in_waves
 from cdem.model.faces import face_areas, face_normals
 from cdem.model.flat_arrays import Floats
 from cdem.model.selection import select_faces
@@ -135,36 +137,56 @@ def _check_faces(
         )
 
 
-def impedances(case: Case, names: list[str]) -> Floats:
-    """Density times speed of P and S waves of the rock of each group [kg/(m2 s)], shape (groups, 2)."""
+def maxwell_at(case: Case, stage: str | None) -> Maxwell | None:
+    """Branches of the first dynamic stage from one on, without a name from the first on."""
+    names = [item.name for item in case.stages]
+    later = case.stages[names.index(stage) if stage else 0 :]
+    return next((item.damping.maxwell for item in later if item.mode == "dynamic"), None)
+
+
+def impedances(case: Case, names: list[str], stage: str | None) -> Floats:
+    """Density times speed of P and S waves of the rock of each group, from a stage on.
+
+    Waves in rock with Maxwell branches have the speed of the middle of the band.
+
+    Args:
+        case: The case.
+        names: Names of the groups, by number.
+        stage: Name of the stage; None is the first.
+
+    Returns:
+        Impedances [kg/(m2 s)], shape (groups, 2).
+    """
     rocks = [case.materials[case.groups[name].material] for name in names]
     density = np.array([rock.density for rock in rocks])
     young, poisson = (
         np.array([getattr(r, k) for r in rocks]) for k in ("young_modulus", "poisson_ratio")
     )
     first, shear = lame_constants(young, poisson)
-    return np.sqrt(density * np.stack([first + 2 * shear, shear])).T
+    stiffer = stiffer_in_waves(maxwell_at(case, stage))
+    return np.sqrt(stiffer * density * np.stack([first + 2 * shear, shear])).T
 
 
 def wave_forces(
-    case: Case, topology: Topology, faces: NDArray[np.integer], given: BaseInput
+    case: Case, topology: Topology, place: Place, given: BaseInput
 ) -> tuple[NDArray[np.integer], Floats]:
     """Nodal forces of an up-going wave through quiet faces: 2 z v on their vertices.
 
     Args:
         case: The case.
         topology: The model at its start.
-        faces: The faces.
+        place: Boundary that it comes in through.
         given: The wave.
 
     Returns:
         Nodes, ascending, and their forces for a record of 1 m/s [N], shape (nodes, 3).
     """
     direction = np.array(given.motion_of_record)
+    faces = place.faces
     vertex = topology.face_nodes[faces]
     used = vertex >= 0
     normal = face_normals(topology.node_position, vertex)
-    z = impedances(case, topology.group_names)[topology.face_group[faces]]
+    z = impedances(case, topology.group_names, place.boundary.stage)[topology.face_group[faces]]
     along = (normal @ direction)[:, None] * normal
     traction = 2 * (z[:, 1:] * (direction - along) + z[:, :1] * along)
     area = face_areas(topology.node_position, vertex) / used.sum(axis=1)

@@ -14,6 +14,7 @@ from cdem.model.columns import ColumnModel, uneven_sides
 from cdem.model.curves import constant
 from cdem.model.faces import face_normals
 from cdem.model.supports import held_components, supports_of
+from cdem.model.wetted import face_pressures
 
 UPRIGHT = 0.5
 """Vertical part of the normal of a face below which it is a side."""
@@ -25,7 +26,8 @@ def boundary_doubts(build: Build) -> Iterator[str]:
     """Warnings about boundaries.
 
     Raises:
-        CaseError: A wave comes in along an axis that other supports hold.
+        CaseError: A wave comes in along an axis that other supports hold; or water presses on a side
+            where the ground goes on.
     """
     case = build.case
     if not case.boundaries:
@@ -37,6 +39,7 @@ def boundary_doubts(build: Build) -> Iterator[str]:
     for i, place in enumerate(build.boundaries.places):
         where = f"{case.where(f'boundaries.{i}')}: boundaries.{i}"
         yield from _weightless(build, place, where)
+        _refuse_water(build, place, where)
         if place.boundary.quiet:
             _refuse_held_input(place, held[place.nodes], where)
             yield from _held(build, place, held[place.nodes], where)
@@ -44,6 +47,11 @@ def boundary_doubts(build: Build) -> Iterator[str]:
     columns = build.modules[ColumnModel.name]
     assert isinstance(columns, ColumnModel)
     yield from uneven_sides(columns.strips or [])
+    if case.elements.mass == "exact" and any(b.absorbs for b in case.boundaries):
+        yield (
+            f"{case.where('elements.mass')}: elements.mass: exact: blocks at quiet faces move lumped "
+            "masses all the same; with lumped the whole model does"
+        )
     if case.time.mass_scaling is not None:
         yield "mass scaling: waves meet the added mass and come back; leave it out in a case with boundaries"
 
@@ -59,6 +67,23 @@ def _weightless(build: Build, place: Place, where: str) -> Iterator[str]:
         yield (
             f"{where}: {place.boundary.name} begins with the run, so no forces of supports carry the "
             "weight on it: the rock sinks; begin with a static stage on supports, or set gravity to 0"
+        )
+
+
+def _refuse_water(build: Build, place: Place, where: str) -> None:
+    """Refuse open water before a side with a free field."""
+    if place.boundary.free_field is None or build.case.water is None:
+        return
+    wet = [
+        face[(pressure > 0).any(axis=0)]
+        for face, pressure in face_pressures(build, build.start_position)
+    ]
+    count = int(np.isin(np.concatenate(wet), place.faces).sum())
+    if count:
+        raise CaseError(
+            f"{where}: water presses on {count:,} faces of {place.boundary.name} at the start, but with a "
+            "free field the ground goes on behind them; limit the reservoir by its box, so that it ends "
+            "before this side"
         )
 
 

@@ -14,8 +14,9 @@ from cdem.case.case import Case
 from cdem.errors import CaseError
 from cdem.mesh.element_shapes import lame_constants
 from cdem.mesh.topology import Topology
-from cdem.model.boundaries import Place, impedances
+from cdem.model.boundaries import Place, impedances, maxwell_at
 from cdem.model.curves import add_record
+from cdem.model.damping import branches_of
 from cdem.model.faces import face_areas, face_normals
 from cdem.model.flat_arrays import Floats
 from cdem.model.module import Built, Module, Parts
@@ -73,6 +74,13 @@ class Strip:
         return [i for i in range(1, len(self.groups)) if self.groups[i] != self.groups[i - 1]]
 
     @property
+    def is_bond(self) -> NDArray[np.bool_]:
+        """Whether the layer above a level is a bond, by number of the level."""
+        bond = np.zeros(self.count, bool)
+        bond[self.foot_of[self.changes] - 1] = True
+        return bond
+
+    @property
     def foot_of(self) -> Indices:
         """Number of the level at the foot of each layer of rock."""
         steps = np.zeros(len(self.groups), int)
@@ -116,6 +124,7 @@ class ColumnModel(Module):
         out.arrays |= {
             "columns.level_first": levels.astype(np.int32),
             "columns.layer": np.concatenate([_layers(case, t, s) for s in self.strips]).ravel(),
+            "columns.bond": np.concatenate([s.is_bond for s in self.strips]).astype(np.int8),
             "columns.mass": np.concatenate([_masses(case, t, s) for s in self.strips]),
             "columns.foot": np.array([_foot(case, t, s) for s in self.strips]).ravel(),
             "columns.input_first": np.cumsum([0, *map(len, inputs)]).astype(np.int32),
@@ -301,7 +310,9 @@ def _layers(case: Case, t: Topology, strip: Strip) -> Floats:
     """
     rows = np.zeros((strip.count, 4))
     rows[:, :2] = 1.0
-    first, shear = lame_constants(*_of_rock(case, t, strip, "young_modulus", "poisson_ratio"))
+    young, poisson = _of_rock(case, t, strip, "young_modulus", "poisson_ratio")
+    part = branches_of(maxwell_at(case, strip.place.boundary.stage)).part
+    first, shear = lame_constants(part * young, poisson)
     rows[strip.foot_of] = np.stack(
         [np.diff(strip.heights), first + 2 * shear, first, shear], axis=1
     )
@@ -359,7 +370,7 @@ def _foot(case: Case, t: Topology, strip: Strip) -> list[float]:
     """Dashpots of the foot x y z [kg/(m2 s)], and 1 where its motion is given."""
     if not strip.base.boundary.quiet:
         return [0.0, 0.0, 0.0, 1.0]
-    p, s = impedances(case, t.group_names)[strip.groups[0]]
+    p, s = impedances(case, t.group_names, strip.base.boundary.stage)[strip.groups[0]]
     return [s, s, p, 0.0]
 
 
@@ -410,7 +421,8 @@ class _Sides:
         """Rows of matrices, xx yy zz xy yz zx and two pads [kg/s], as `core/surface` has them."""
         faces = strip.faces
         normal = face_normals(t.node_position, t.face_nodes[faces])
-        z = impedances(case, t.group_names)[t.face_group[faces]]
+        stage = strip.place.boundary.stage
+        z = impedances(case, t.group_names, stage)[t.face_group[faces]]
         share = face_areas(t.node_position, t.face_nodes[faces]) / there.sum(axis=1)
         rows = np.zeros((len(faces), 8))
         rows[:, :3] = z[:, 1:]

@@ -114,6 +114,14 @@ def branches_of(maxwell: Maxwell | None) -> Branches:
     return Branches(own.frequency, own.weight, _rounded(1 / own.storage(maxwell.reference)))
 
 
+def stiffer_in_waves(maxwell: Maxwell | None) -> float:
+    """Moduli of rock in the middle of the band of its branches, over those of its material [1]."""
+    if maxwell is None:
+        return 1.0
+    branches = branches_of(maxwell)
+    return branches.part * branches.storage(float(np.sqrt(np.prod(maxwell.band))))
+
+
 def damping_of(stage: Stage) -> tuple[float, float, float, float]:
     """Local, mass, stiffness and contact damping of a stage."""
     d = stage.damping

@@ -54,7 +54,7 @@ def node_loads_of(
     for place in boundaries.places:
         for given in place.boundary.inputs:
             if given.kind == "compliant":
-                shaken, force = wave_forces(case, topology, place.faces, given)
+                shaken, force = wave_forces(case, topology, place, given)
                 nodes.append(shaken)
                 forces.append(force)
                 number = add_record(case.processed(given.record), place.boundary.stage, curves)

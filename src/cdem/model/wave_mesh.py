@@ -106,15 +106,18 @@ def moving_axes(group: Group) -> Floats:
     return np.array([axis not in group.fix for axis in "xyz"], float)
 
 
+def group_volume(build: Build, group: str) -> float:
+    """Volume of the elements of a group [m3]."""
+    t, number = build.topology, build.group_names.index(group)
+    volumes = build.assembly.element_volume
+    return float(sum(volumes[s][t.element_group[s] == number].sum() for s in NODES))
+
+
 def shear_speed(build: Build, group: str, interfaces: list[dict[str, Any]]) -> float:
     """Speed of long S waves in a group, with the compliance of its bonds and joints [m/s]."""
     rock = build.case.materials[build.case.groups[group].material]
     shear = rock.young_modulus / (2 * (1 + rock.poisson_ratio))
-    t, number = build.topology, build.group_names.index(group)
-    volume = sum(
-        build.assembly.element_volume[shape][t.element_group[shape] == number].sum()
-        for shape in NODES
-    )
+    volume = group_volume(build, group)
     added = 0.0
     if group not in build.compensation:  # its elements make up for its bonds
         added = sum(

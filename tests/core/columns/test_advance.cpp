@@ -15,16 +15,28 @@ struct OneColumn {
   std::vector<Real> layers, mass{1, 2, 2, 1}, foot{3, 3, 5, 0}, input{0, 0, 0, 0};
   std::vector<Real> value{1}, displacement = std::vector<Real>(4 * levels), before = displacement,
                               after = displacement;
-  std::vector<Flag> acts{1};
+  std::vector<Flag> acts{1}, bond = std::vector<Flag>(levels);
+  std::vector<Real> branch;
+  Real rock_time = 0, bond_time = 0;
+  MaxwellBranches maxwell;
   Real damping = 0, dt = 0.1;
   Index step = 0;
 
   OneColumn() {
     for (Index l = 0; l < levels; ++l) layers.insert(layers.end(), {2, 12, 4, 6});
   }
+  Layers ground() {
+    return {.rows = layers.data(),
+            .bond = bond.data(),
+            .rock_time = rock_time,
+            .bond_time = bond_time,
+            .maxwell = {maxwell, dt},
+            .motion = {displacement.data(), before.data(), after.data(),
+                       branch.empty() ? nullptr : branch.data()}};
+  }
   void advance() {
     AdvanceColumns{.level_first = first.data(),
-                   .layers = {layers.data()},
+                   .layers = ground(),
                    .mass = mass.data(),
                    .foot = foot.data(),
                    .input_first = input_first.data(),
@@ -37,8 +49,7 @@ struct OneColumn {
                    .dt_before = dt,
                    .dt = dt,
                    .step = step,
-                   .made = made.data(),
-                   .motion = {displacement.data(), before.data(), after.data()}}(One{0});
+                   .made = made.data()}(One{0});
   }
   void go(Index steps) {
     for (Index k = 0; k < steps; ++k, ++step) advance();
@@ -56,8 +67,10 @@ struct OneColumn {
 }  // namespace
 
 TEST_CASE("stress on a horizontal plane follows from the slope of the displacement") {
-  const Row layer{Row::Numbers{2.0, 12.0, 4.0, 6.0}};
-  const Vec stress = stress_across(layer, {0, 1, 2}, {4, 2, 1});
+  OneColumn c;
+  const Real up[] = {0, 1, 2, 0, 4, 2, 1, 0};
+  std::copy(std::begin(up), std::end(up), c.displacement.begin());
+  const Vec stress = c.ground().stress_across(0);
   CHECK(stress.x == doctest::Approx(12));
   CHECK(stress.y == doctest::Approx(3));
   CHECK(stress.z == doctest::Approx(-6));
@@ -115,6 +128,40 @@ TEST_CASE("a column that does not act has no velocity and stays where it is") {
   c.go(5);
   CHECK(c.displacement == there);
   CHECK(norm(c.at(c.after, 2)) == 0);
+}
+
+TEST_CASE(
+    "a dashpot adds its time times the rate of the strain, in rock and in bonds by their own") {
+  OneColumn c;
+  c.rock_time = 0.5;
+  c.bond_time = 0.25;
+  c.bond[1] = 1;
+  for (Index l = 0; l < c.levels; ++l) c.before[4 * l] = l;
+  CHECK(c.ground().stress_across(0).x == doctest::Approx(0.5 * 6 / 2));
+  CHECK(c.ground().stress_across(1).x == doctest::Approx(0.25 * 6 / 2));
+}
+
+TEST_CASE("branches stiffen rock at once, and relax at their rates") {
+  OneColumn c;
+  c.maxwell = {.weight = {0.2, 0.3, 0.4}, .rate = {1, 5, 20}};
+  c.branch.assign(std::size_t(4) * BranchStep::count * c.levels, 0.0);
+  c.bond[1] = 1;
+  c.foot = {0, 0, 0, 1};
+  for (Index l = 1; l < c.levels; ++l) c.mass[l] = 1e30;
+  // the foot moves alone, from the others away, at 1 m/s for one step, and then rests
+  c.input = {-1, 0, 0, 0};
+  c.go(1);
+  c.input = {0, 0, 0, 0};
+  c.go(1);
+  Real stress = 0.1;  // [m] over the height, times 6 / 2
+  for (Index j = 0; j < 3; ++j) {
+    const Real passed = c.maxwell.rate[j] * c.dt;
+    stress += c.maxwell.weight[j] * 0.1 * (1 - std::exp(-passed)) / passed;
+  }
+  CHECK(c.ground().stress_across(0).x == doctest::Approx(3 * stress).epsilon(1e-12));
+  CHECK(norm(c.ground().stress_across(1)) < 1e-20);
+  c.go(400);
+  CHECK(c.ground().stress_across(0).x == doctest::Approx(3 * 0.1).epsilon(1e-9));
 }
 
 TEST_CASE("damping of the mass slows a column at its rate") {

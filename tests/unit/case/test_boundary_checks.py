@@ -84,6 +84,23 @@ def test_a_side_of_a_side_is_refused():
         case(base(), *sides)
 
 
+def test_moduli_that_change_beside_columns_are_refused():
+    band = {"ratio": 0.02, "band": [1, 10], "reference": 2}
+    side = SIDE | {"free_field": {"base": "base"}, "stage": "shake"}
+    for first, second in (
+        ({}, {"maxwell": band}),
+        ({"maxwell": band}, {"maxwell": band | {"ratio": 0.01}}),
+    ):
+        stages = [*STAGES[:1], STAGES[1] | {"damping": first},
+                  {"name": "again", "mode": "dynamic", "duration": 1, "damping": second}]  # fmt: skip
+        with pytest.raises(
+            CaseError, match=r"stages\.2\.damping: the moduli of the ground would change"
+        ):
+            case(base(), side, stages=stages)
+        stages[2]["damping"] = first
+        case(base(), side, stages=stages)
+
+
 @pytest.mark.parametrize(
     "given, moves",
     [

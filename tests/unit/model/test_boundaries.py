@@ -6,7 +6,8 @@ from scenes import case
 
 import cdem
 from cdem.errors import CaseError
-from cdem.model.boundaries import wave_forces
+from cdem.model.boundaries import impedances, wave_forces
+from cdem.model.damping import branches_of
 from cdem.model.supports import held_components, supports_of
 
 ROCK = {"density": 2600, "young_modulus": "10 GPa", "poisson_ratio": 0.25}
@@ -27,8 +28,9 @@ def face(*normal, group="a"):
 def model(*boundaries, supports=None, blocks=BLOCKS, **more):
     """Rock on a base that is held, between two sides."""
     supports = supports or [face(*DOWN) | {"fix": ["x", "y", "z"]}, face(*EAST) | {"fix": ["x"]}]
-    return case(blocks, {"a": {}}, rock=ROCK, stages=STAGES, boundaries=list(boundaries),
-                loads={"gravity": [0, 0, -9.81], "supports": supports}, **more)  # fmt: skip
+    given = {"stages": STAGES} | more
+    return case(blocks, {"a": {}}, rock=ROCK, boundaries=list(boundaries),
+                loads={"gravity": [0, 0, -9.81], "supports": supports}, **given)  # fmt: skip
 
 
 def quiet(name, *normal, **more):
@@ -91,13 +93,34 @@ def test_a_wave_pushes_with_twice_its_impedance(normal, z):
     samples = {"samples": [0, 1, 2, 1, 0, -1, -2, -1, 0, 1, 0], "unit": "m/s", "step": 0.01}
     sim = cdem.Simulation(model(boundary, records={"r": samples | {"scale": 0.1}}), threads=1)
     (place,) = sim.build.boundaries.places
-    nodes, force = wave_forces(sim.case, sim.build.topology, place.faces, place.boundary.inputs[0])
+    nodes, force = wave_forces(sim.case, sim.build.topology, place, place.boundary.inputs[0])
     shear = np.sqrt(2600 * 4e9)
     speeds = np.array([shear, shear, np.sqrt(3) * shear])
     impedance = speeds if z == "xyz" else speeds[::-1]
     area = 8.0 if z == "xyz" else 4.0
     assert force.sum(axis=0) == pytest.approx(2 * area * impedance * [0.6, 0, 0.8])
     assert (nodes == place.nodes).all()
+
+
+@pytest.mark.parametrize("reference", ["static", 2.0])
+def test_waves_have_the_speed_of_the_middle_of_the_band(reference):
+    """A branch stores g x^2/(1 + x^2) at x times its frequency; moduli are divided by the sum at 2 Hz."""
+    band = {"ratio": 0.05, "band": [0.5, 50], "reference": reference}
+    stages = [stage | {"damping": {"maxwell": band}} if stage["mode"] == "dynamic" else stage
+              for stage in STAGES]  # fmt: skip
+    sim = cdem.Simulation(model(quiet("base", *DOWN), stages=stages), threads=1)
+    rest, shaken = (impedances(sim.case, ["a"], name)[0] for name in ("rest", "shake"))
+    branches = branches_of(sim.case.stages[1].damping.maxwell)
+
+    def storage(f):
+        x2 = (f / np.array(branches.frequency)) ** 2
+        return 1 + (branches.weight * x2 / (1 + x2)).sum()
+
+    plain = np.sqrt(2600 * 4e9) * np.array([np.sqrt(3), 1])
+    over = storage(5.0) / (1 if reference == "static" else storage(2.0))
+    assert shaken == pytest.approx(np.sqrt(over) * plain)
+    assert rest == pytest.approx(shaken)  # waves come with the next dynamic stage
+    assert sim.build.arrays["surface_quads.impedance"][:2] == pytest.approx(shaken)
 
 
 WRONG = {
