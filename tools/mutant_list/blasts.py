@@ -193,4 +193,20 @@ FAULTS = [
         "near = charges[0]",
         "tests/unit/output/test_blast_peaks.py",
     ),
+    Mutant(
+        "after the end",
+        "a blast that goes off after the end of the run is accepted",
+        "src/cdem/case/blast_checks.py",
+        "if blast.delay >= time:",
+        "if blast.delay >= np.inf:",
+        "tests/unit/case/test_blast_checks.py",
+    ),
+    Mutant(
+        "radius for diameter",
+        "the hole of an explosive is compared with a radius",
+        "src/cdem/model/blast_doubts.py",
+        "if abs(2 * radius / hole - 1) > UNLIKE:",
+        "if abs(radius / hole - 1) > UNLIKE:",
+        HOLES,
+    ),
 ]
