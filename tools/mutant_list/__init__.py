@@ -2,6 +2,7 @@
 
 from mutant_list import (
     bindings,
+    blasts,
     case,
     core_base,
     core_bolts,
@@ -31,7 +32,7 @@ from mutant_list import (
 )
 from mutant_list.mutant import Mutant
 
-PYTHON = [package, case, mesh, joints, model, run, output, study, screening, seismic]
+PYTHON = [package, case, mesh, joints, model, run, output, study, screening, seismic, blasts]
 CORE = [
     bindings,
     core_rest,

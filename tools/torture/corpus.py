@@ -61,6 +61,7 @@ def write_cases(folder: Path) -> None:
             (folder / f"tests-{name.lower()}.yaml").write_text(text)
     (folder / "tests-jointed.yaml").write_text(JOINTED)
     (folder / "parts-solid.yaml").write_text(parts_of_cases.SOLID)
+    (folder / "parts-waves.yaml").write_text(parts_of_cases.WAVES)
     (folder / "parts-joints.yaml").write_text(parts_of_cases.JOINTS)
     trees = {f"scene-{name}": scene() for name, scene in SCENES.items()}
     trees |= {f"law-{name}": case for name, case in parts_of_cases.of_laws().items()}

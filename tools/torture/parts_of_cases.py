@@ -147,6 +147,41 @@ loads: {gravity: [0, 0, -9.81]}
 water: {fields: [{surface: heights.asc, lift: 1, interface: wet}]}
 stages: [{name: d, mode: dynamic, duration: 0.01}]
 """
+WAVES = """\
+model:
+  blocks:
+    - {group: rock, box: {size: [4, 2, 4], divisions: [2, 1, 2]}}
+    - {group: table, box: {size: [1, 1, 1]}, translate: [20, 0, 0]}
+materials: {rock: {density: 2500, young_modulus: 1 GPa, poisson_ratio: 0.25}}
+groups: {rock: {material: rock}, table: {material: rock}}
+interfaces: {default: {friction_angle: 30}}
+records:
+  motion: {file: wave.csv, kind: velocity, band: [1 Hz, 20 Hz], baseline: cubic}
+boundaries:
+  - {name: base, surface: {group: [rock], normal: [0, 0, -1]}, quiet: true, stage: shake,
+     input: [{record: motion, direction: [1, 0, 0], kind: compliant, motion: outcrop},
+       {record: motion, direction: [0, 0, 1], motion: upgoing}]}
+  - {name: west, surface: {group: rock, normal: [-1, 0, 0]}, free_field: {base: base}, stage: shake}
+  - {name: east, surface: {group: rock, normal: [1, 0, 0]}, free_field: {base: base}, stage: shake}
+  - {name: far, surface: {group: rock, normal: [0, 1, 0]}, quiet: true, stage: again}
+  - {name: floor, surface: {group: table, normal: [0, 0, -1]}, stage: shake,
+     input: {record: motion, direction: [0, 1, 0], kind: rigid}}
+loads:
+  gravity: [0, 0, -9.81]
+  supports:
+    - {surface: {group: rock, normal: [0, 0, -1]}, fix: [x, y, z]}
+    - {surface: {group: table, normal: [0, 0, -1]}, fix: [x, y, z]}
+    - {surface: {group: rock, normal: [1, 0, 0]}, fix: [x]}
+    - {surface: {group: rock, normal: [-1, 0, 0]}, fix: [x]}
+stages:
+  - {name: rest, mode: static, max_steps: 50}
+  - {name: shake, mode: dynamic, duration: 2, damping: {rayleigh: {ratio: 0.05, frequency: 3 Hz, part: mass}}}
+  - {name: again, mode: dynamic, duration: 0.01,
+     damping: {maxwell: {ratio: 0.05, band: [0.5 Hz, 20 Hz], reference: static}}}
+histories:
+  - {name: base, boundary: base, quantities: [v_base, v_up, v_down], every: 1 ms}
+  - {name: crest, point: [0, 0, 4], quantities: [velocity, acceleration]}
+"""
 BESIDE = {
     "pressures.csv": "x,y,z,pressure\n0,0,0,1e4\n9,0,0,1e4\n0,9,0,1e4\n0,0,9,0\n9,9,9,0\n",
     "factor.csv": "time [ms], factor [%]\n0, 0\n5, 100\n",
@@ -172,7 +207,8 @@ IN_PARTS = {"mb", "s", "a"}
 
 def of_laws() -> dict[str, dict[str, Any]]:
     """A case for each law, by its name: every parameter is given."""
-    from cdem.case.laws import BLOCK_LAWS, INTERFACE_LAWS, SURFACE_LAWS
+    from cdem.case.laws import BLOCK_LAWS, INTERFACE_LAWS
+    from cdem.case.surface_schema import OF_ENTRIES
 
     found = {}
     for laws, place, name in (
@@ -189,13 +225,12 @@ def of_laws() -> dict[str, dict[str, Any]]:
             }
             case[place][name] |= OF_LAWS.get(law.name, {})
             found[law.name] = case
-    for law in SURFACE_LAWS.values():
+    for law in OF_ENTRIES.values():
         case = _two_blocks()
         entry = {"surface": {"group": "high", "normal": [0, 0, 1]}, "law": law.name}
         entry |= {p.name: _value(p) for p in law.parameters}
         named = entry | {"history": {"file": "factor.csv"}, "stage": "move"}
-        entries = [named] if law.absorbs else [entry, named]
-        case["loads"] = case.get("loads", {}) | {"surfaces": entries}
+        case["loads"] = case.get("loads", {}) | {"surfaces": [entry, named]}
         found[law.name] = case
     return found
 

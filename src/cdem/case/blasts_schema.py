@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import math
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 
@@ -152,6 +153,10 @@ class Explosive(Part):
     def peak(self) -> float:
         """Peak pressure on the wall [Pa]."""
         return self.density * self.speed**2 / 8 * (self.diameter / self.hole) ** EXPONENT
+
+    def mass(self, length: float) -> float:
+        """Mass of a charge of a length [m] along the whole hole [kg]."""
+        return self.density * math.pi / 4 * self.diameter**2 * length
 
 
 class DetonationBase(Part):

@@ -8,6 +8,7 @@ from copy import deepcopy
 from pathlib import Path
 from typing import Any
 
+from cdem.case.blast_checks import blast_problems
 from cdem.case.boundary_checks import boundary_problems
 from cdem.case.curve_times import last_dynamic, least_time, over_early, record_users, timed
 from cdem.case.input_file import is_file
@@ -65,7 +66,7 @@ def _names(case: CaseParts) -> Iterator[Problem]:
     yield from _surfaces(case)
     yield from boundary_problems(case)
     yield from _rock_damping(case)
-    yield from _blasts(case)
+    yield from blast_problems(case)
     yield from _curves(case)
     yield from record_contradictions(case)
     yield from _joints(case)
@@ -95,16 +96,6 @@ def _surfaces(case: CaseParts) -> Iterator[Problem]:
             yield (
                 ("histories", i, "quantities"),
                 "surface_force needs loads.surfaces or loads.blasts in the case",
-            )
-
-
-def _blasts(case: CaseParts) -> Iterator[Problem]:
-    for i, blast in enumerate(case.loads.blasts):
-        stage = next((s for s in case.stages if blast.stage in (None, s.name)), None)
-        if stage is not None and stage.mode == "static":
-            yield (
-                ("loads", "blasts", i, "stage"),
-                f"{stage.name} is static, and a blast needs time; write stage: NAME of a dynamic stage",
             )
 
 

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
+from cdem.case.blast_checks import cut_pulses
 from cdem.case.curve_times import in_static_stages, record_users
 from cdem.case.interface_schema import InterfacePair
 from cdem.case.laws import SURFACE_LAWS
@@ -207,6 +208,7 @@ def doubts(case: CaseParts) -> tuple[list[Problem], list[Problem]]:
     for found, told in zip(record_doubts(case), (impossible, unusual), strict=True):
         told += found
     unusual += in_static_stages(case)
+    unusual += cut_pulses(case)
     for index, stage in enumerate(case.stages):
         unusual += _local_damping(case, index, stage)
     return impossible, unusual

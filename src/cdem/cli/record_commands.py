@@ -173,7 +173,8 @@ def records(
 ) -> None:
     """Measure the motions of a run: peaks, Arias intensity, spectra, Newmark slip, spectral ratios.
 
-    Writes tables and pictures for every history with velocity or acceleration into DIR/motions.
+    Writes tables and pictures for every history with velocity or acceleration into DIR/motions. For
+    points near blasts also the peak velocity (PPV) and the distance from the nearest charge.
     """
     from cdem.output import motions
 

@@ -18,6 +18,7 @@ from cdem.mesh.element_shapes import NODES, SLIVER
 from cdem.model.blast_doubts import blast_doubts
 from cdem.model.boundary_doubts import boundary_doubts
 from cdem.model.build import Build
+from cdem.model.charges import charge_lines, charges
 from cdem.model.compliance import bonded_interfaces, coarse_beams
 from cdem.model.contact_overlaps import contact_interfaces
 from cdem.model.damping_doubts import damping_doubts
@@ -77,6 +78,7 @@ class Audit:
         self.step = self._step()
         self.damping = rock_dampings(build, self.interfaces)
         self.frequency = highest_frequency(build.case)
+        self.charges = charges(build)
         self.wave_mesh = wave_mesh(build, self.interfaces, self.frequency)
         self.rigid_bases = rigid_bases(build, self.wave_mesh)
         self.warnings = self._warnings()
@@ -284,6 +286,7 @@ class Audit:
             "contacts": self.contacts,
             "discs": self.discs,
             **self.modules,
+            "charges": [one.as_dict() for one in self.charges],
             "wave_mesh": self.wave_mesh,
             "rigid_bases": self.rigid_bases,
             "initial_stress": self._build.initial.as_dict() if self._build.initial else None,
@@ -327,6 +330,7 @@ class Audit:
         lines += self._modules_text()
         lines += base_lines(self.rigid_bases)
         lines += self._records_text()
+        lines += charge_lines(self.charges)
         lines += wave_lines(self.wave_mesh, self.frequency)
         s = self.step
         lines += [

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
+from cdem.case.blast_checks import begun_stages
 from cdem.case.blasts_schema import Blast
 from cdem.errors import CaseError
 from cdem.mesh.arrays import lengths
@@ -25,6 +26,8 @@ QUIET_RADII = 10.0
 """Distance of quiet faces from a hole, in its radii, below which the audit warns."""
 PER_RISE = 10.0
 """Elements in the way of an S wave during the rise, below which the audit warns."""
+UNLIKE = 0.2
+"""Part by which the diameter of a hole may differ from that of its explosive in silence."""
 COMPARED = 500
 """Most faces of a hole that are compared with quiet faces."""
 
@@ -45,10 +48,13 @@ def blast_doubts(build: Build) -> Iterator[str]:
         path = f"loads.blasts.{number}"
         faces = select_faces(build.case, t, build.group_names, blast.surface, path)
         where = f"{build.case.where(path)}: {path}"
+        _refuse_absent(where, build, faces, blast)
         angle, radius = bend(t, faces)
         if angle:
             yield from _few_faces(where, 360 / angle)
             yield from _near_quiet(where, t, faces, radius, quiet)
+            yield from _other_hole(where, blast, radius)
+        yield from _far_begin(where, t, faces, blast)
         yield from _fast_rise(where, build, faces, blast)
 
 
@@ -87,6 +93,41 @@ def bend(t: Topology, faces: NDArray[np.intp]) -> tuple[float, float]:
         np.minimum.at(least, side, angle)
     around = float(np.median(least[np.isfinite(least)]))
     return around, float(np.median(radius[angle <= 1.5 * around]))
+
+
+def _refuse_absent(where: str, build: Build, faces: NDArray[np.intp], blast: Blast) -> None:
+    begun = begun_stages(build.case, blast)
+    present = {build.group_names[g] for g in np.unique(build.topology.face_group[faces])}
+    if gone := sorted(present & set(build.case.absent(begun))):
+        raise CaseError(
+            f"{where}: the wall is of {', '.join(gone)}, not present in the stage "
+            f"{build.case.stages[begun - 1].name}; give the blast a stage in which the rock is there"
+        )
+
+
+def _other_hole(where: str, blast: Blast, radius: float) -> Iterator[str]:
+    if blast.explosive is None:
+        return
+    hole = blast.explosive.hole
+    if abs(2 * radius / hole - 1) > UNLIKE:
+        yield (
+            f"{where}: explosive.hole is {hole:.3g} m, and the hole in the mesh has a diameter of about "
+            f"{2 * radius:.3g} m; correct one of them, the peak and the waves depend on both"
+        )
+
+
+def _far_begin(where: str, t: Topology, faces: NDArray[np.intp], blast: Blast) -> Iterator[str]:
+    if blast.detonation is None:
+        return
+    middle = face_middles(t, faces)
+    away = lengths(middle - np.array(getattr(blast.detonation, "from")))
+    size = float(np.linalg.norm(np.ptp(middle, axis=0)))
+    if away.min() > size:
+        yield (
+            f"{where}: the detonation begins {away.min():.3g} m from the hole and reaches it "
+            f"{away.min() / blast.detonation.speed:.3g} s after the delay; give detonation.from a point of "
+            "the hole"
+        )
 
 
 def _few_faces(where: str, around: float) -> Iterator[str]:

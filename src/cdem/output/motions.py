@@ -12,6 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cdem.errors import CaseError, CdemError
+from cdem.output.blast_peaks import HEADS as PEAK_HEADS
+from cdem.output.blast_peaks import Peak, blast_peaks, peak_lines
 from cdem.output.reader import read_histories, read_summary
 from cdem.output.record_pictures import draw_motion
 from cdem.seismic.measures import (
@@ -73,11 +75,13 @@ class Motions:
         motions: Motions of the histories.
         to: History that spectral ratios refer to, or None.
         yields: Yield accelerations of Newmark's block [m/s2].
+        peaks: Peak velocities of points near blasts.
     """
 
     motions: list[Motion]
     to: Motion | None
     yields: list[float]
+    peaks: list[Peak]
 
     def measured(self) -> Iterable[tuple[str, str, Measures]]:
         """History, axis and measures."""
@@ -106,7 +110,7 @@ class Motions:
             for name, axis, sense, slips in self.slips():
                 numbers = "".join(f"{slip:>12.4g}" for slip in slips)
                 out.append(f"{f'{name} {sense}{axis}':<20}{numbers}")
-        return out
+        return out + peak_lines(self.peaks)
 
     def write(self, folder: Path) -> list[Path]:
         """Write the tables; returns the files."""
@@ -135,6 +139,12 @@ class Motions:
             heads = ["history", "axis", "sense", *(f"slip at {y!r} m/s2 [m]" for y in self.yields)]
             rows = [[name, axis, sense, *slips] for name, axis, sense, slips in self.slips()]
             paths.append(_write(folder, "newmark", heads, rows))
+        if self.peaks:
+            count = max(len(peak.values()) for peak in self.peaks)
+            heads = ["history", "nearest charge", *PEAK_HEADS[:count]]
+            rows = [[p.name, p.hole, *p.values()] for p in self.peaks]
+            rows = [row + [""] * (len(heads) - len(row)) for row in rows]
+            paths.append(_write(folder, "ppv", heads, rows))
         return paths
 
     def draw(self, folder: Path) -> list[Path]:
@@ -192,7 +202,7 @@ def measure(folder: Path, *, to: str | None, yields: Sequence[float], stage: str
         CdemError: There is no such stage or history, or none can be measured.
     """
     columns = read_histories(folder)
-    begin, end = _times(folder, stage)
+    stage, begin, end = _times(folder, stage)
     time = columns["time [s]"]
     rows = np.flatnonzero((time >= begin) & (time <= end))
     rows = rows[np.diff(time[rows], prepend=-np.inf) > 0]
@@ -213,7 +223,7 @@ def measure(folder: Path, *, to: str | None, yields: Sequence[float], stage: str
         hint = f"did you mean {close[0]}?" if close else f"the run has: {', '.join(names)}"
         raise CaseError(f"--to {to}: no history of this name with a motion; {hint}")
     other = None if to is None else motions[names.index(to)]
-    return Motions(motions, other, list(yields))
+    return Motions(motions, other, list(yields), blast_peaks(folder, columns, rows, stage))
 
 
 def _loud(motions: list[Motion]) -> list[Motion]:
@@ -227,8 +237,8 @@ def _loud(motions: list[Motion]) -> list[Motion]:
     return [motion for motion in motions if motion.parts]
 
 
-def _times(folder: Path, stage: str | None) -> tuple[float, float]:
-    """Begin and end of a dynamic stage [s]."""
+def _times(folder: Path, stage: str | None) -> tuple[str, float, float]:
+    """Name, begin and end of a dynamic stage [s]."""
     found = {s["name"]: s for s in read_summary(folder)["stages"] if s["mode"] == "dynamic"}
     if not found:
         raise CdemError(f"{folder}: no dynamic stage has ended; motions are those of such a stage")
@@ -237,7 +247,7 @@ def _times(folder: Path, stage: str | None) -> tuple[float, float]:
             f"--stage {stage}: the run has ended these dynamic stages: {', '.join(found)}"
         )
     one = found[stage or list(found)[-1]]
-    return one["begin"], one["begin"] + one["time"]
+    return one["name"], one["begin"], one["begin"] + one["time"]
 
 
 def _motions(columns: dict[str, Floats], rows: NDArray[np.intp]) -> Iterable[Motion]:

@@ -469,6 +469,7 @@ class RunState:
             "energies": energies,
             "broken": self.broken,
             "stages": self.finished_stages,
+            "charges": [one.as_dict() for one in self.audit.charges],
             "groups": groups,
             "taken_out": self.taken_out,
             "departures": [departure.text() for departure in self.departures],

@@ -1,5 +1,7 @@
 """Blasts in a case: their pulses, peaks, entries of surface laws, and errors with their places."""
 
+import math
+
 import pytest
 from scenes import case
 
@@ -13,7 +15,7 @@ TOP = {"surface": {"group": "a", "normal": [0, 0, 1]}}
 CHARGE = {"density": "850 kg/m3", "speed": 4000, "diameter": "50 mm", "hole": "89 mm"}
 STAGES = [
     {"name": "rest", "mode": "static"},
-    {"name": "blow", "mode": "dynamic", "duration": 1e-3},
+    {"name": "blow", "mode": "dynamic", "duration": 0.1},
 ]
 
 
@@ -42,11 +44,19 @@ def test_the_other_shapes_have_their_own_peaks():
     assert made.dump() == type(made).from_dict(made.model_dump(mode="json")).dump()
 
 
-def test_an_explosive_gives_the_peak():
-    """850 4000² / 8 (50 / 89)^2.4."""
+def test_a_table_of_suction_alone_has_its_largest_suction_as_peak():
+    made = blasts(TOP | {"pressure": {"table": [[0, 0], ["1 ms", "-2 MPa"], ["2 ms", "-1 MPa"]]}})
+    ((_, entry),) = made.surface_entries
+    assert entry.pressure == 2e6
+    assert entry.history == [(0, 0), (1e-3, -1), (2e-3, -0.5)]
+
+
+def test_an_explosive_gives_the_peak_and_the_mass():
+    """850 4000² / 8 (50 / 89)^2.4; a cylinder of 50 mm and 3 m."""
     pulse = {key: PULSE[key] for key in ("rise", "fall")}
     made = blasts(TOP | {"pressure": pulse, "explosive": CHARGE})
     assert made.loads.blasts[0].peak == pytest.approx(1.7e9 * (50 / 89) ** 2.4)
+    assert made.loads.blasts[0].explosive.mass(3) == pytest.approx(850 * math.pi * 0.025**2 * 3)
 
 
 def test_a_detonation_makes_rings():

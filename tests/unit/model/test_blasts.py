@@ -13,7 +13,7 @@ from cdem.rows import rows_of
 from cdem.verification.hexahedra import extruded, walls, write
 
 PULSE = {"peak": "20 MPa", "rise": "9 ms", "fall": "20 ms"}
-STAGES = [{"name": "blow", "mode": "dynamic", "duration": 9e-3}]
+STAGES = [{"name": "blow", "mode": "dynamic", "duration": 0.2}]
 
 
 def pipe(path, around, outer=12.0, layers=1):
@@ -129,3 +129,66 @@ def test_a_stage_cannot_change_the_detonation(tmp_path):
     sim.set("loads.blasts.0.delay", 1e-3)
     with pytest.raises(CaseError, match="not its surface, law, stage or detonation"):
         sim.set("loads.blasts.0.detonation.speed", 1000)
+
+
+def test_holes_of_blasts_and_their_charges_are_told(tmp_path):
+    """The hole of 1 m is 2 m long; a charge of 850 kg/m3 and 1 m fills half of its diameter."""
+    pipe(tmp_path / "pipe.msh", 16, layers=2)
+    charge = {"density": 850, "speed": 400, "diameter": 1, "hole": 2}
+    pulse = {key: PULSE[key] for key in ("rise", "fall")}
+    model = blast(tmp_path / "pipe.msh", pressure=pulse, explosive=charge, stage="blow")
+    sim = Simulation(model, threads=1)
+    (told,) = sim.summary("finished")["charges"]
+    assert (told["hole"], told["stage"]) == ("wall", "blow")
+    ends = sorted(told["ends"], key=lambda end: end[2])
+    np.testing.assert_allclose(ends, [[0, 0, 0], [0, 0, 2]], atol=1e-9)
+    assert told["mass"] == pytest.approx(850 * np.pi / 4 * 2)
+    assert sim.audit.as_dict()["charges"] == [told]
+    assert "wall: hole 2 m long, from " in sim.audit.text()
+    assert ", 1335 kg of explosive" in sim.audit.text()
+    assert "of explosive" not in Simulation(blast(tmp_path / "pipe.msh"), threads=1).audit.text()
+
+
+def test_each_hole_of_a_surface_has_a_charge(tmp_path):
+    """Two walls of boxes, which share no vertex: a flat one each."""
+    boxes = [{"group": "a", "box": {"size": [1, 1, 1]}, "translate": [3 * i, 0, 0]} for i in (0, 1)]
+    top = {"surface": {"group": "a", "normal": [0, 0, 1]}, "pressure": PULSE}
+    sim = Simulation(case(boxes, {"a": {}}, loads={"blasts": [top]}, stages=STAGES), threads=1)
+    places = [one["ends"][0] for one in sim.audit.as_dict()["charges"]]
+    np.testing.assert_allclose(sorted(places), [[0.5, 0.5, 1], [3.5, 0.5, 1]])
+    assert "  loads.blasts.0: charge at " in sim.audit.text()
+
+
+def test_a_wall_of_rock_that_is_not_there_is_refused(tmp_path):
+    pipe(tmp_path / "pipe.msh", 16)
+    later = [*STAGES, {"name": "later", "mode": "dynamic", "duration": 1e-2, "add": ["rock"]}]
+    boxes = [{"group": "other", "box": {"size": [1, 1, 1]}, "translate": [20, 0, 0]}]
+    model = case(boxes, {"rock": {}, "other": {}}, model={"mesh": str(tmp_path / "pipe.msh")},
+                 loads={"blasts": [{"surface": "wall", "pressure": PULSE, "stage": "blow"}]},
+                 stages=later,
+                 waves={"allow_coarse": True})  # fmt: skip
+    with pytest.raises(
+        CaseError,
+        match=r"loads\.blasts\.0: the wall is of rock, not present in the stage blow; give",
+    ):
+        Simulation(model)
+
+
+def test_an_explosive_for_another_hole_is_told(tmp_path):
+    """A hole of 2 m of 16 faces, and one of 0.3 m."""
+    pipe(tmp_path / "pipe.msh", 16)
+    pulse = {key: PULSE[key] for key in ("rise", "fall")}
+    charge = {"density": 850, "speed": 40, "diameter": 0.2}
+    assert not doubts(blast(tmp_path / "pipe.msh", pressure=pulse, explosive=charge | {"hole": 2}))
+    (told,) = doubts(blast(tmp_path / "pipe.msh", pressure=pulse, explosive=charge | {"hole": 0.3}))
+    assert (
+        "explosive.hole is 0.3 m, and the hole in the mesh has a diameter of about 1.96 m" in told
+    )
+
+
+def test_a_detonation_that_begins_far_from_its_hole_is_told(tmp_path):
+    pipe(tmp_path / "pipe.msh", 16)
+    near, far = ({"from": [x, 0, 0], "speed": 4000} for x in (0, 101))
+    assert not doubts(blast(tmp_path / "pipe.msh", detonation=near))
+    (told,) = doubts(blast(tmp_path / "pipe.msh", detonation=far))
+    assert "the detonation begins 100 m from the hole and reaches it 0.025 s after" in told

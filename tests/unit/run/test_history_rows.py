@@ -58,7 +58,8 @@ def test_a_record_that_acts_gives_its_own_step_to_the_rows(tmp_path):
     record = {"samples": synthetic(duration=0.2)[1], "unit": "m/s2", "step": 0.002}
     driven = {"group": "rock", "velocity": [1, 0, 0], "record": "k", "stage": "shake"}
     stages = [*STAGES, {"name": "shake", "mode": "dynamic", "duration": 0.1}]
-    shaken = case(entry(), stages=stages, records={"k": record}, loads={"velocities": [driven]})
+    shaken = case(entry(), stages=stages, records={"k": record}, loads={"velocities": [driven]},
+                  waves={"allow_coarse": True})  # fmt: skip
     Simulation(shaken, output=tmp_path / "out").run()
     steps = np.diff(times(tmp_path / "out"))
     np.testing.assert_allclose(steps[:39], 0.005, atol=1.1e-4)

@@ -25,7 +25,7 @@ def run(study):
         exact = theory(rock, x, t)[0]
         line_source.compare(study, f"u_x at {x:g} m", t, exact, u[:, k, 0], 0.03)
         shown |= {f"{x:g} m": (1e3 * t, 1e3 * exact),
-                  f".{x:g} m, cdem": (1e3 * t[::40], 1e3 * u[::40, k, 0])}  # fmt: skip
+                  f".{x:g} m, cdem": (1e3 * t[::16], 1e3 * u[::16, k, 0])}  # fmt: skip
     for k, x in enumerate(UP, start=len(ALONG)):
         line_source.compare(study, f"u_up at {x:g} m", t, theory(rock, x, t)[1], u[:, k, 1], 0.03)
     study.curve("Horizontal motion of the ground", "time [ms]", "u_x [mm]", shown)

@@ -34,5 +34,5 @@ def run(study):
         exact = theory(rock, x, t)
         line_source.compare(study, f"slip at {x:g} m", t, exact, slip[:, k], 0.03)
         shown |= {f"{x:g} m": (1e3 * t, 1e3 * exact),
-                  f".{x:g} m, cdem": (1e3 * t[::40], 1e3 * slip[::40, k])}  # fmt: skip
+                  f".{x:g} m, cdem": (1e3 * t[::16], 1e3 * slip[::16, k])}  # fmt: skip
     study.curve("Slip of the joint", "time [ms]", "slip [mm]", shown)
