@@ -9,7 +9,7 @@
 
 #include "core/base/views.hpp"
 #include "core/nodes/supports.hpp"
-#include "core/records/rules.hpp"
+#include "core/records/branch_step.hpp"
 
 namespace cdem {
 

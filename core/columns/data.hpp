@@ -99,7 +99,7 @@ struct Columns {
          .unit = "1, -",
          .meaning = "slopes of the springs of Maxwell branches in the layer above, with pads",
          .rows = "column_levels",
-         .numbers = 4 * BranchStep::count,
+         .numbers = 4 * MaxwellBranches::count,
          .optional = true},
         s.branch);
     visit.stored({.name = "columns.made",

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "core/elements/shapes.hpp"
-#include "core/records/rules.hpp"
+#include "core/records/branch_step.hpp"
 
 namespace cdem {
 

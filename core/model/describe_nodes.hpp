@@ -44,6 +44,21 @@ void describe_motion(NodeState& n, Stored&& stored) {
           .numbers = 4,
           .parts = {{"force", 3}, ""}},
          n.reaction);
+  stored({.name = "node.bonded_node",
+          .meaning = "label shared by nodes that intact bonds hold together",
+          .rows = "nodes",
+          .refers_to = {"nodes"}},
+         n.bonded_node);
+  stored({.name = "node.body",
+          .meaning = "label shared by nodes of all blocks that bonds join",
+          .rows = "nodes",
+          .refers_to = {"nodes"}},
+         n.body);
+}
+
+/// Adaptive relaxation of the nodes: part of `describe_state`.
+template <class Stored>
+void describe_relaxation(NodeState& n, Stored&& stored) {
   stored({.name = "node.relax",
           .unit = "N, 1, m/s, -",
           .meaning = "force, slowing down and velocity of the last step, of adaptive relaxation",
@@ -58,16 +73,6 @@ void describe_motion(NodeState& n, Stored&& stored) {
           .rows = "nodes",
           .optional = true},
          n.relax_mass);
-  stored({.name = "node.bonded_node",
-          .meaning = "label shared by nodes that intact bonds hold together",
-          .rows = "nodes",
-          .refers_to = {"nodes"}},
-         n.bonded_node);
-  stored({.name = "node.body",
-          .meaning = "label shared by nodes of all blocks that bonds join",
-          .rows = "nodes",
-          .refers_to = {"nodes"}},
-         n.body);
 }
 
 /// Removed blocks, and the forces that they left: part of `describe_state`.

@@ -13,6 +13,7 @@ namespace cdem {
 template <class Stored, class Rebuilt>
 void describe_state(const Model& m, State& s, Stored&& stored, Rebuilt&& rebuilt) {
   describe_motion(s.nodes, stored);
+  describe_relaxation(s.nodes, stored);
   describe_taken_out(s.nodes, stored);
   describe_applied(s, stored, rebuilt);
   describe_samples(s.nodes, stored);

@@ -1,7 +1,6 @@
 // rules.hpp - tolerances and coefficients that model and kernels share.
 #pragma once
 
-#include "core/base/elementary.hpp"
 #include "core/base/lanes.hpp"
 
 namespace cdem {
@@ -33,28 +32,6 @@ struct MaxwellBranches {
   bool any() const { return weight[0] + weight[1] + weight[2] > 0; }
   /// Moduli in fast motion over those of slow loading.
   Real stiffer() const { return 1 + weight[0] + weight[1] + weight[2]; }
-};
-
-/// Numbers of the branches over one step, for a strain that is linear in it: the strain z of the
-/// spring of branch j becomes left_j z + share_j (change of the strain), left = exp(-rate dt),
-/// share = (1 - left) / (rate dt).
-struct BranchStep {
-  static constexpr Index count = MaxwellBranches::count;
-  Real weight[count] = {}, left[count] = {}, share[count] = {};
-
-  BranchStep() = default;
-  BranchStep(const MaxwellBranches& maxwell, Real dt) {
-    for (Index j = 0; j < count; ++j) {
-      const Real passed = maxwell.rate[j] * dt;
-      weight[j] = maxwell.weight[j];
-      left[j] = exp_of(-passed);
-      share[j] = passed > 0 ? (1 - left[j]) / passed : 1;
-    }
-  }
-  template <class T, class Strain>
-  CDEM_HD Strain next(const Strain& spring, const Strain& change, Index j) const {
-    return T(left[j]) * spring + T(share[j]) * change;
-  }
 };
 
 /// Damping of the nodes' motion.

@@ -111,7 +111,7 @@ FAULTS = [
     Mutant(
         "branch decay",
         "Maxwell branches that never relax",
-        "core/records/rules.hpp",
+        "core/records/branch_step.hpp",
         "return T(left[j]) * spring + T(share[j]) * change;",
         "return spring + T(share[j]) * change;",
         "tests/core/elements/test_rock_damping.cpp",
@@ -136,7 +136,7 @@ FAULTS = [
     Mutant(
         "branch share",
         "the change of strain in a step counts wholly, whatever relaxes within the step",
-        "core/records/rules.hpp",
+        "core/records/branch_step.hpp",
         "share[j] = passed > 0 ? (1 - left[j]) / passed : 1;",
         "share[j] = 1;",
         "tests/validation/test_damping.py::test_the_ratio_of_a_ringing_bar_is_as_asked",

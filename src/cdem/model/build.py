@@ -181,7 +181,7 @@ def build(case: Case) -> Build:
     check_interfaces(case, topology, names, interface_of)
     snap_mates(topology)
 
-    core, curves = native.Core(), constant()
+    curves = constant()
     groups = compensated_groups(case, topology, names, laws, interface_of, bonds)
     between = made_up_between(laws, interface_of, bonds, groups)
     made_up = compensate(case, topology, names, groups, between)
@@ -191,14 +191,7 @@ def build(case: Case) -> Build:
     parts = _assemble(
         case, topology, at, laws, interface_of, paired, made_up, curves, None, modules, boundaries
     )
-    core.take_counts(parts.counts)
-    core.take_model(parts.arrays)
-    parts.arrays.clear()  # the core has copies
-    _share(topology, core.model())
-    hand_over(core, curves, {})
-    core.set_interfaces(parts.interfaces)
-    core.set_options(options_of(case, [case.materials[case.groups[n].material] for n in names]))
-    core.start(at)
+    core = _started(case, topology, parts, curves)
     under = set_initial_stress(case, topology, names, laws, core)
     core.find_applied()
     built = Build(
@@ -218,6 +211,22 @@ def build(case: Case) -> Build:
     )
     _set_motion(built)
     return built
+
+
+def _started(case: Case, topology: Topology, parts: Assembly, curves: Curves) -> Core:
+    """A core with the arrays of a model, at its start; the topology has views of them."""
+    core = native.Core()
+    core.take_counts(parts.counts)
+    core.take_model(parts.arrays)
+    parts.arrays.clear()  # the core has copies
+    at = topology.node_position
+    _share(topology, core.model())
+    hand_over(core, curves, {})
+    core.set_interfaces(parts.interfaces)
+    names = topology.group_names
+    core.set_options(options_of(case, [case.materials[case.groups[n].material] for n in names]))
+    core.start(at)
+    return core
 
 
 def _set_motion(built: Build) -> None:
@@ -296,17 +305,25 @@ def _assemble(
     at_birth = replace(topology, node_position=born)
     parts = assemble(at_birth, properties, native.padded_stride, modules.values())
     parts.interfaces = entries
-    check_fall(case, topology, laws, parts)
-    check_softening(case, topology, names, parts)
+    _check(case, topology, laws, parts)
     parts.arrays |= {f"support.{key}": value.ravel() for key, value in supports.items()}
     drop_gravity(case, topology, names, parts)
     parts.arrays |= node_loads_of(case, topology, names, curves, boundaries)
-    given = Parts(
-        case, topology, laws, interface_of, curves, boundaries, native.padded_stride, parts
-    )
+    stride = native.padded_stride
+    given = Parts(case, topology, laws, interface_of, curves, boundaries, stride, parts)
+    _add_modules(modules, given)
+    return parts
+
+
+def _add_modules(modules: dict[str, Module], given: Parts) -> None:
     for module in modules.values():
         module.add_arrays(given)
-    return parts
+
+
+def _check(case: Case, topology: Topology, laws: list[Interface], parts: Assembly) -> None:
+    """Refuse joints that fall open, and strengths that cannot soften."""
+    check_fall(case, topology, laws, parts)
+    check_softening(case, topology, topology.group_names, parts)
 
 
 def _beside_cells(case: Case, names: Sequence[str], paired: NDArray[np.bool_]) -> NDArray[np.bool_]:

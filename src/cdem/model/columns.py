@@ -104,54 +104,24 @@ class ColumnModel(Module):
         return cls()
 
     def add_arrays(self, parts: Parts) -> None:
-        case, t, out = parts.case, parts.topology, parts.assembly
-        if not any(b.free_field for b in case.boundaries):
+        if not any(boundary.free_field for boundary in parts.case.boundaries):
             return
+        case, t = parts.case, parts.topology
         if self.strips is None:
             self.strips = strips_of(case, t, parts.boundaries.places)
             for strip in self.strips:
                 _find_bonds(parts, strip)
-        sides = [_Sides(case, t, strip) for strip in self.strips]
-        inputs = [_inputs(parts, strip) for strip in self.strips]
         levels = np.cumsum([0, *(strip.count for strip in self.strips)])
-        acting = parts.boundaries.begun if not parts.boundaries.held else set()
-        rows = [row for some in inputs for _, row in some]
-        layers = [len(layer) for side in sides for layer in side.layers]
-        out.counts |= {
+        sides = [_Sides(case, t, strip) for strip in self.strips]
+        parts.assembly.counts |= {
             "columns.count": len(self.strips),
             "columns.side_count": sum(len(side.nodes) for side in sides),
         }
-        out.arrays |= {
+        parts.assembly.arrays |= {
             "columns.level_first": levels.astype(np.int32),
-            "columns.layer": np.concatenate([_layers(case, t, s) for s in self.strips]).ravel(),
-            "columns.bond": np.concatenate([s.is_bond for s in self.strips]).astype(np.int8),
-            "columns.mass": np.concatenate([_masses(case, t, s) for s in self.strips]),
-            "columns.foot": np.array([_foot(case, t, s) for s in self.strips]).ravel(),
-            "columns.input_first": np.cumsum([0, *map(len, inputs)]).astype(np.int32),
-            "columns.input_curve": np.array([c for some in inputs for c, _ in some], np.int32),
-            "columns.input": np.array(rows, float).reshape(-1, 4).ravel(),
-            "columns.acts": np.array(
-                [s.place.boundary.name in acting for s in self.strips], np.int8
-            ),
-            "columns.node": np.concatenate([side.nodes for side in sides]).astype(np.int32),
-            "columns.level": np.concatenate(
-                [side.level + first for side, first in zip(sides, levels, strict=False)]
-            ).astype(np.int32),
-            "columns.part": np.concatenate([side.part for side in sides]),
-            "columns.dashpot": np.concatenate([side.dashpots for side in sides]).ravel(),
-            "columns.layer_first": np.cumsum([0, *layers]).astype(np.int32),
-            "columns.side_layer": np.array(
-                [
-                    layer + first
-                    for side, first in zip(sides, levels, strict=False)
-                    for some in side.layers
-                    for layer in some
-                ],
-                np.int32,
-            ),
-            "columns.area": np.array(
-                [area for side in sides for some in side.areas for area in some]
-            ).ravel(),
+            **_arrays_of_layers(case, t, self.strips),
+            **_arrays_of_feet(parts, self.strips),
+            **_arrays_of_sides(sides, levels),
         }
 
     def report(self, build: Built) -> list[dict[str, Any]]:
@@ -172,6 +142,46 @@ class ColumnModel(Module):
             f"{one['levels']} levels, above {one['base']}"
             for one in report
         ]
+
+
+def _arrays_of_layers(case: Case, t: Topology, strips: list[Strip]) -> dict[str, NDArray]:
+    return {
+        "columns.layer": np.concatenate([_layers(case, t, s) for s in strips]).ravel(),
+        "columns.bond": np.concatenate([s.is_bond for s in strips]).astype(np.int8),
+        "columns.mass": np.concatenate([_masses(case, t, s) for s in strips]),
+    }
+
+
+def _arrays_of_feet(parts: Parts, strips: list[Strip]) -> dict[str, NDArray]:
+    inputs = [_inputs(parts, strip) for strip in strips]
+    acting = parts.boundaries.begun if not parts.boundaries.held else set()
+    curves, rows = ([pair[k] for some in inputs for pair in some] for k in (0, 1))
+    feet = [_foot(parts.case, parts.topology, strip) for strip in strips]
+    return {
+        "columns.foot": np.array(feet).ravel(),
+        "columns.input_first": np.cumsum([0, *map(len, inputs)]).astype(np.int32),
+        "columns.input_curve": np.array(curves, np.int32),
+        "columns.input": np.array(rows, float).reshape(-1, 4).ravel(),
+        "columns.acts": np.array([s.place.boundary.name in acting for s in strips], np.int8),
+    }
+
+
+def _arrays_of_sides(sides: list[_Sides], levels: Indices) -> dict[str, NDArray]:
+    """Arrays of the nodes of all sides; `levels` are the numbers of the lowest level of each strip."""
+    layers = [[layer + first for layer in some] for side, first in zip(sides, levels, strict=False)
+              for some in side.layers]  # fmt: skip
+    areas = [area for side in sides for some in side.areas for area in some]
+    return {
+        "columns.node": np.concatenate([side.nodes for side in sides]).astype(np.int32),
+        "columns.level": np.concatenate(
+            [side.level + first for side, first in zip(sides, levels, strict=False)]
+        ).astype(np.int32),
+        "columns.part": np.concatenate([side.part for side in sides]),
+        "columns.dashpot": np.concatenate([side.dashpots for side in sides]).ravel(),
+        "columns.layer_first": np.cumsum([0, *map(len, layers)]).astype(np.int32),
+        "columns.side_layer": np.array([layer for some in layers for layer in some], np.int32),
+        "columns.area": np.array(areas).ravel(),
+    }
 
 
 def strips_of(case: Case, t: Topology, places: list[Place]) -> list[Strip]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -34,6 +34,34 @@ def _curve_of(case: Case, driven: PrescribedVelocity, curves: Curves) -> int:
     return add_curve(driven.history, driven.stage, curves)
 
 
+class _Held:
+    """Components of nodes that are held or driven, as they are found.
+
+    Attributes:
+        component: 1 for components that are, shape (nodes, 3).
+        velocity: Their velocities for a factor of 1 [m/s].
+        curve: Indices of the curves of their factors.
+    """
+
+    def __init__(self, count: int) -> None:
+        self.component = np.zeros((count, 3), np.int8)
+        self.velocity = np.zeros((count, 3))
+        self.curve = np.zeros((count, 3), np.int32)
+
+    def fix(self, nodes: NDArray, axes: Iterable[int]) -> None:
+        """Hold components of nodes."""
+        self.drive(nodes, axes, [0.0] * 3, 0)
+
+    def drive(
+        self, nodes: NDArray, axes: Iterable[int], speeds: Sequence[float], curve: int
+    ) -> None:
+        """Give components of nodes the speeds along x, y, z."""
+        for axis in axes:
+            self.component[nodes, axis] = 1
+            self.velocity[nodes, axis] = speeds[axis]
+            self.curve[nodes, axis] = curve
+
+
 def supports_of(
     case: Case,
     topology: Topology,
@@ -46,51 +74,49 @@ def supports_of(
     Supports of boundaries that have begun are left out; all nodes of boundaries have a row, as the
     number of rows stays.
     """
-    count = len(topology.node_position)
-    component = np.zeros((count, 3), np.int8)
-    velocity = np.zeros((count, 3))
-    curve = np.zeros((count, 3), np.int32)
-
-    def hold(nodes: NDArray, axes: list[int], speeds: list[float], index: int) -> None:
-        for axis, speed in zip(axes, speeds, strict=True):
-            component[nodes, axis] = 1
-            velocity[nodes, axis] = speed
-            curve[nodes, axis] = index
-
+    found = _Held(len(topology.node_position))
     groups = topology.block_group[topology.node_block]
     for name, group in case.groups.items():
-        axes = ["xyz".index(c) for c in group.fix]
-        hold(groups == names.index(name), axes, [0.0] * len(axes), 0)
+        found.fix(groups == names.index(name), _axes(group.fix))
     for index, item in enumerate(case.loads.supports):
-        if index in boundaries.ended:
-            continue
-        nodes = select_nodes(case, topology, names, item, f"loads.supports.{index}")
-        axes = ["xyz".index(c) for c in item.fix]
-        hold(nodes, axes, [0.0] * len(axes), 0)
+        if index not in boundaries.ended:
+            nodes = select_nodes(case, topology, names, item, f"loads.supports.{index}")
+            found.fix(nodes, _axes(item.fix))
     for index, driven in enumerate(case.loads.velocities):
         nodes = select_nodes(case, topology, names, driven, f"loads.velocities.{index}")
-        axes = ["xyz".index(c) for c in driven.components]
-        curve_of = _curve_of(case, driven, curves)
-        hold(nodes, axes, [driven.velocity[a] for a in axes], curve_of)
+        curve = _curve_of(case, driven, curves)
+        found.drive(nodes, _axes(driven.components), driven.velocity, curve)
+    _hold_boundaries(case, curves, boundaries, found)
+    return _rows(found, boundaries)
 
+
+def _axes(letters: Iterable[str]) -> list[int]:
+    return ["xyz".index(letter) for letter in letters]
+
+
+def _hold_boundaries(case: Case, curves: Curves, boundaries: Boundaries, found: _Held) -> None:
+    """Hold boundaries in static stages; let rigid ones move with their records in others."""
     for place in boundaries.acting:
         rigid = [given for given in place.boundary.inputs if given.kind == "rigid"]
         if boundaries.held or rigid:
-            hold(place.nodes, [0, 1, 2], [0.0] * 3, 0)
+            found.fix(place.nodes, range(3))
         for given in rigid if not boundaries.held else []:
-            curve_of = add_record(case.processed(given.record), place.boundary.stage, curves)
-            axes = [a for a in range(3) if given.direction[a]]
-            hold(place.nodes, axes, [given.motion_of_record[a] for a in axes], curve_of)
+            curve = add_record(case.processed(given.record), place.boundary.stage, curves)
+            axes = np.flatnonzero(given.direction)
+            found.drive(place.nodes, axes.tolist(), given.motion_of_record, curve)
 
-    held = np.asarray(component.any(axis=1))
+
+def _rows(found: _Held, boundaries: Boundaries) -> dict[str, NDArray]:
+    """Rows of the nodes that are held, or may be."""
+    held = np.asarray(found.component.any(axis=1))
     held[boundaries.nodes] = True
-    row = np.full(count, -1, np.int32)
+    row = np.full(len(held), -1, np.int32)
     row[held] = np.arange(held.sum())
     if not held.any():  # the core looks rows up; an empty table still needs one
         held[:1] = True
     return {
         "row": row,
-        "component": component[held],
-        "velocity": velocity[held],
-        "curve": curve[held],
+        "component": found.component[held],
+        "velocity": found.velocity[held],
+        "curve": found.curve[held],
     }
