@@ -129,7 +129,10 @@ TEST_CASE("damping of rock shortens the step, and a stage's step can be asked fo
   const Real free = step_limit(m, floating.state).dt, w = 2 / free;
   const Real mass = 0.4 * w, time = 0.6 / w, xi = 0.5 * (0.4 + 0.6);
   const MaxwellBranches branches{.weight = {0.1, 0.2, 0.3}, .rate = {1, 2, 3}};
-  const StageDamping rayleigh{.nodes = {0, mass}, .time = time}, maxwell{.maxwell = branches};
+  StageDamping rayleigh{}, maxwell{};
+  rayleigh.nodes = {0, mass};
+  rayleigh.time = time;
+  maxwell.maxwell = branches;
   CHECK(relative_error(stable_step(m, floating.state, rayleigh),
                        free * (std::sqrt(1 + xi * xi) - xi)) < 1e-14);
   CHECK(relative_error(stable_step(m, floating.state, maxwell), free / std::sqrt(1.6)) < 1e-14);
