@@ -14,6 +14,7 @@ from cdem.tools import doctor
 
 def test_doctor_says_what_works(run_cli, monkeypatch):
     monkeypatch.setattr(doctor, "_opengl", lambda: "not tried")  # takes seconds
+    monkeypatch.delenv("CDEM_ISA", raising=False)
     status, out, _ = run_cli("doctor")
     assert status == 0
     assert f"cdem      {__version__}" in out
