@@ -69,8 +69,9 @@ struct BondDashpots {
       const auto holds = bonds.pairs.bond.at(k, p) > T(0.5);
       force[k] = dashpots.move_on(p, k, count, spring, frame, change, live, holds, lost);
     }
-    bonds.move_to_vertices(force);
-    for (Index k = 0; k < count; ++k) bonds.corner_force.add(p, count, k, force[k]);
+    bonds.move_to_vertices(force, [&](Index k, const Vec3<T>& of_vertex) {
+      bonds.corner_force.add(p, count, k, of_vertex);
+    });
     dashpots.work.set(0, p, dashpots.work.at(0, p) + lost);
   }
 };

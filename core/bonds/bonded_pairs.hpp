@@ -210,13 +210,14 @@ struct ConformingBonds {
   CDEM_HD BondSpring<Number<I>> spring(I p) const {
     return pairs.spring(p, pairs.area.at(0, p) / Number<I>(Real(count)));
   }
-  /// From forces at the bond points to those on the mates  [N].
-  template <class T>
-  CDEM_HD void move_to_vertices(Vec3<T>* force) const {
+  /// Forces on the mates from those at the bond points: calls `use` with the number of a vertex and
+  /// its force  [N].
+  template <class T, class Use>
+  CDEM_HD void move_to_vertices(const Vec3<T>* force, const Use& use) const {
     const T own(1.0 - indentation), shared(indentation / count), zero(0.0);
     Vec3<T> sum{zero, zero, zero};
     for (Index k = 0; k < count; ++k) sum = sum + force[k];
-    for (Index k = 0; k < count; ++k) force[k] = own * force[k] + shared * sum;
+    for (Index k = 0; k < count; ++k) use(k, own * force[k] + shared * sum);
   }
 
  private:
@@ -277,14 +278,11 @@ struct ConformingBonds {
     add(pairs.broken_shear, p, select(live, total.shear, zero));
   }
   template <class I, class M, class T>
-  CDEM_HD void write_forces(I p, const M& live, Vec3<T>* force) const {
-    const T zero(0.0);
-    move_to_vertices(force);
-    for (Index k = 0; k < count; ++k) {
-      Vec3<T> fk = force[k];
-      fk = {select(live, fk.x, zero), select(live, fk.y, zero), select(live, fk.z, zero)};
-      corner_force.set(p, count, k, fk);
-    }
+  CDEM_HD void write_forces(I p, const M& live, const Vec3<T>* force) const {
+    move_to_vertices(force, [&](Index k, const Vec3<T>& of_vertex) {
+      const T zero(0.0);
+      corner_force.set(p, count, k, select(live, of_vertex, Vec3<T>{zero, zero, zero}));
+    });
   }
   template <class I>
   CDEM_HD static void add(InOutTable table, I p, Number<I> more) {
