@@ -93,6 +93,7 @@ loads:
 stages:
   - {name: fall, mode: dynamic, duration: 0.05, damping: {contact: 0.1}}
   - {name: go on, mode: dynamic, duration: 0.05, set: {materials.soft.cohesion: 1 kPa}}
+output: {every: 0.05}  # rows of histories are steps apart: the fused kernel runs in between
 """
 
 LEAVING = """
