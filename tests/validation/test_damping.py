@@ -255,3 +255,37 @@ def test_a_run_that_is_stopped_in_a_damped_stage_goes_on_with_the_same_bits(tmp_
     assert second.run() == "finished"
     assert digest(second) == digest(whole)
     assert second.energies == whole.energies
+
+
+@pytest.mark.parametrize("divisions", [2, 3], ids=["mates", "overlaps"])
+def test_a_bond_rings_down_by_the_ratio_that_is_asked(divisions):
+    """Two stiff cubes on a soft bond: w^2 = 2 k A / m, and a half swing leaves exp(-pi xi / s),
+    s^2 = 1 - xi^2. The mass part alone would have half of the ratio.
+    """
+    k, xi = 1e9, 0.05
+    w = np.sqrt(2 * k / 2600)
+    blocks = [
+        {"group": "bar", "box": {"size": [1, 1, 1], "divisions": [n] * 3}, "translate": [0, 0, z]}
+        for n, z in ((2, 0), (divisions, 1))
+    ]
+    damping = {"rayleigh": {"ratio": xi, "frequency": w / 2 / np.pi}}
+    made = case(
+        blocks, {"bar": {}}, rock={"young_modulus": "200 GPa", "density": 2600},
+        interfaces={"default": STRONG | {"stiffness_n": k, "stiffness_s": k}},
+        stages=[{"name": "ring", "mode": "dynamic", "duration": 0.1, "damping": damping}],
+    )  # fmt: skip
+    sim = cdem.Simulation(made, threads=1)
+    upper = sim.fields["position"][:, 2] > 1 + 1e-9
+    upper |= np.isin(np.arange(len(upper)), np.flatnonzero(sim.build.topology.node_block == 1))
+    velocity = rows_of(sim.core, "node.motion").velocity
+    velocity[:, 2] = np.where(upper, 0.01, -0.01)
+    mass, opening, turns = sim.fields["mass"], [0.0], []
+    while len(turns) < 5:
+        sim.step(1)
+        z = mass * sim.fields["displacement"][:, 2]
+        opening.append(z[upper].sum() / mass[upper].sum() - z[~upper].sum() / mass[~upper].sum())
+        if len(opening) > 2 and (opening[-1] - opening[-2]) * (opening[-2] - opening[-3]) < 0:
+            turns.append(abs(opening[-2]))
+    decrement = np.log(turns[0] / turns[4]) / 4
+    assert decrement == pytest.approx(np.pi * xi / np.sqrt(1 - xi**2), rel=0.03)
+    assert abs(sim.energies["error"]) < 1e-6
