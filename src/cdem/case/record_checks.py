@@ -105,10 +105,9 @@ def _left(record: Record, found: Measures) -> Iterator[str]:
 
 def _cut(case: CaseParts, record: Processed, stage: str | None) -> Iterator[str]:
     """The end of a record for which the stages from its own on have no time."""
-    names = [one.name for one in case.stages]
-    if stage not in (None, *names):
+    rest = case.stages_from(stage)
+    if not rest:
         return
-    rest = case.stages[0 if stage is None else names.index(stage) :]
     time = sum(one.duration or 0.0 for one in rest)
     if any(one.max_steps or one.until for one in rest) or time >= record.duration:
         return

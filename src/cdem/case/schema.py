@@ -455,6 +455,17 @@ class CaseParts(Part):
         """Groups that are not fixed in all directions."""
         return [name for name, group in self.groups.items() if len(set(group.fix)) < 3]
 
+    def stages_from(self, name: str | None) -> list[Stage]:
+        """The stages from one on; all without a name, none where there is no such stage."""
+        names = [stage.name for stage in self.stages]
+        if name is None:
+            return self.stages
+        return self.stages[names.index(name) :] if name in names else []
+
+    def begun_names(self, begun: int) -> set[str | None]:
+        """Names of the first so many stages, and None, with which the run itself begins."""
+        return {None, *(stage.name for stage in self.stages[:begun])}
+
     def absent(self, begun: int) -> list[str]:
         """Groups absent once this many stages have begun, in any order."""
         return absent_groups([(stage.remove, stage.add) for stage in self.stages], begun)

@@ -69,11 +69,9 @@ class Boundaries:
 
     def follow(self, case: Case, begun: int) -> None:
         """Note the boundaries that act once this many stages of a case have begun."""
-        names = [stage.name for stage in case.stages[:begun]]
-        self.begun = {
-            place.boundary.name for place in self.places if place.boundary.stage in (None, *names)
-        }
-        self.held = bool(names) and case.stages[begun - 1].mode == "static"
+        names = case.begun_names(begun)
+        self.begun = {p.boundary.name for p in self.places if p.boundary.stage in names}
+        self.held = begun > 0 and case.stages[begun - 1].mode == "static"
 
 
 def boundaries_of(case: Case, topology: Topology, names: list[str]) -> Boundaries:
@@ -139,8 +137,7 @@ def _check_faces(
 
 def maxwell_at(case: Case, stage: str | None) -> Maxwell | None:
     """Branches of the first dynamic stage from one on, without a name from the first on."""
-    names = [item.name for item in case.stages]
-    later = case.stages[names.index(stage) if stage else 0 :]
+    later = case.stages_from(stage)
     return next((item.damping.maxwell for item in later if item.mode == "dynamic"), None)
 
 

@@ -66,7 +66,7 @@ def _branches(case: Case, index: int, maxwell: Maxwell, where: str) -> Iterator[
 
 def _quiet(case: Case, index: int, stage: Stage, where: str) -> Iterator[str]:
     """Tell of quiet surfaces that were made for rock with other branches."""
-    begun = {None, *(one.name for one in case.stages[: index + 1])}
+    begun = case.begun_names(index + 1)
     own = stiffer_in_waves(stage.damping.maxwell)
     for _, entry in case.surface_entries:
         if not SURFACE_LAWS[entry.law].absorbs or entry.stage not in begun:

@@ -68,10 +68,8 @@ class SurfaceModel(Module):
         entry = np.repeat(np.arange(len(items)), [len(f) for f in faces])
         area = face_areas(t.node_position, t.face_nodes[face])
         normal = face_normals(t.node_position, t.face_nodes[face])
-        speeds = {item.stage: impedances(case, parts.names, item.stage) for item in items}
-        impedance = np.array(
-            [speeds[items[i].stage][g] for i, g in zip(entry, t.face_group[face], strict=True)]
-        ).reshape(-1, 2)
+        of_items = np.stack([impedances(case, parts.names, item.stage) for item in items])
+        impedance = of_items[entry, t.face_group[face]]
         self.found = [(len(f), float(area[entry == i].sum())) for i, f in enumerate(faces)]
         corners = (t.face_nodes[face] >= 0).sum(axis=1)
         for kind, vertices in KINDS.items():

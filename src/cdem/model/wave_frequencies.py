@@ -20,7 +20,7 @@ def record_frequencies(case: Case, index: int) -> tuple[float, float] | None:
     Returns:
         The two frequencies; None without a record.
     """
-    begun = {None, *(stage.name for stage in case.stages[: index + 1])}
+    begun = case.begun_names(index + 1)
     names = sorted({name for _, name, stage in record_users(case) if stage in begun})
     records = [case.processed(name) for name in names]
     if not records:

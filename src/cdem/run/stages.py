@@ -147,7 +147,7 @@ def row_every(case: Case, index: int, frame_every: float) -> float:
     asked = [entry.every for entry in case.histories if entry.every is not None]
     if asked:
         return min([frame_every, *asked])
-    begun = {None, *(stage.name for stage in case.stages[: index + 1])}
+    begun = case.begun_names(index + 1)
     steps = [case.processed(name).step for _, name, stage in record_users(case) if stage in begun]
     return min([frame_every / ROWS_PER_FRAME, *steps])
 
