@@ -255,8 +255,8 @@ FAULTS = [
         "records of a later stage",
         "mass damping is compared with records of all stages",
         "src/cdem/model/wave_frequencies.py",
-        "case.stages[: index + 1]",
-        "case.stages",
+        "case.begun_names(index + 1)",
+        "case.begun_names(len(case.stages))",
         "tests/unit/model/test_damping_doubts.py",
     ),
     Mutant(
