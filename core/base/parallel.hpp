@@ -69,6 +69,18 @@ CDEM_HD inline Index raise(Index& count, bool alone) {
   return __atomic_fetch_add(&count, 1, __ATOMIC_RELAXED);
 #endif
 }
+/// Set bits of a word that several threads may set at once.
+CDEM_HD inline void raise_bits(std::uint64_t& word, std::uint64_t bits, bool alone) {
+  if (alone) {
+    word |= bits;
+    return;
+  }
+#if defined(__CUDA_ARCH__)
+  atomicOr(reinterpret_cast<unsigned long long*>(&word), bits);
+#else
+  __atomic_fetch_or(&word, bits, __ATOMIC_RELAXED);
+#endif
+}
 /// Set a flag that several threads may set at once.
 CDEM_HD inline void set(Flag& flag, Flag value = 1) {
 #if defined(__CUDA_ARCH__)

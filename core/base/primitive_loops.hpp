@@ -3,12 +3,14 @@
 #pragma once
 
 #include <algorithm>
+#include <exception>
 #include <vector>
 
 #include "core/base/exact_sum.hpp"
 #include "core/base/openmp.hpp"
 #include "core/base/parallel_loops.hpp"
 #include "core/base/primitives.hpp"
+#include "core/base/uninitialized.hpp"
 
 namespace cdem {
 
@@ -109,6 +111,58 @@ void select_items(Queue, Index count, const Kernel& kernel, Column<Index>& list)
   for (Index p = 1; p < parts.count; all += found[p++])
     std::copy_n(items + parts.at(p).first, found[p], items + all);
   list.renew(all);
+}
+
+/// Parts of items that take different times: several for each thread.
+inline Parts uneven_parts_of(Index items) {
+  constexpr Index a_thread = 16;
+  const Index threads = parts_of(items, worth_threads).count;
+  return {items, threads > 1 ? a_thread * threads : 1};
+}
+
+template <class Item, class Kernel>
+void list_items(Queue, Index rows, const Kernel& kernel, Column<Item>& items) {
+  const Parts parts = uneven_parts_of(rows);
+  std::vector<Unset<Item>> found(parts.count);
+  std::exception_ptr failure;  // memory may run out, and no exception may leave a parallel loop
+  parts.for_each([&](Index p, Range part) {
+    try {
+      const auto act = [&own = found[p]](const Item& item) { own.push_back(item); };
+      for (Index row = part.first; row < part.last; ++row) kernel.visit(One{row}, act);
+    } catch (...) {
+#pragma omp critical(cdem_list_items)
+      failure = std::current_exception();
+    }
+  });
+  if (failure) std::rethrow_exception(failure);
+  std::vector<std::size_t> first(parts.count + 1);
+  for (Index p = 0; p < parts.count; ++p) first[p + 1] = first[p] + found[p].size();
+  items.renew(first.back());
+  parts.for_each([&](Index p, Range) {
+    std::copy(found[p].begin(), found[p].end(), items.data() + first[p]);
+    found[p] = {};
+  });
+}
+
+template <class Item, class Kernel>
+void keep_items(Queue, const Kernel& kernel, Column<Item>& items) {
+  const Parts parts = uneven_parts_of(Index(items.size()));
+  std::vector<Index> kept(parts.count);
+  Item* const list = items.data();
+  parts.for_each([&](Index p, Range part) {
+    Index next = part.first;
+    for (Index i = part.first; i < part.last; ++i) {
+      Item item = list[i];
+      const bool holds = kernel(item);
+      list[next] = item;
+      next += holds ? 1 : 0;
+    }
+    kept[p] = next - part.first;
+  });
+  Index all = kept[0];
+  for (Index p = 1; p < parts.count; all += kept[p++])
+    std::copy_n(list + parts.at(p).first, kept[p], list + all);
+  items.renew(all);
 }
 
 #else
@@ -217,6 +271,62 @@ void select_items(Queue queue, Index count, const Kernel& kernel, Column<Index>&
   for_each_item(queue, count, CountItem<Kernel>{kernel, first + 1});
   list.renew(scan(queue, count, first + 1, first));
   for_each_item(queue, count, PutCounted{first, list.data()});
+}
+
+template <class Item, class Kernel>
+struct CountVisited {
+  Kernel kernel;
+  Index* count;
+  CDEM_HD void operator()(One row) const {
+    Index visited = 0;
+    kernel.visit(row, [&](const Item&) { ++visited; });
+    count[row.i] = visited;
+  }
+};
+template <class Item, class Kernel>
+struct PutVisited {
+  Kernel kernel;
+  const Index* first;
+  Item* items;
+  CDEM_HD void operator()(One row) const {
+    Index place = first[row.i];
+    kernel.visit(row, [&](const Item& item) { items[place++] = item; });
+  }
+};
+template <class Item, class Kernel>
+void list_items(Queue queue, Index rows, const Kernel& kernel, Column<Item>& items) {
+  Index* const first = scratch<Index>(std::size_t(rows) + 1);
+  for_each_item(queue, rows, CountVisited<Item, Kernel>{kernel, first + 1});
+  items.renew(scan(queue, rows, first + 1, first));
+  for_each_item(queue, rows, PutVisited<Item, Kernel>{kernel, first, items.data()});
+}
+
+template <class Item, class Kernel>
+struct CountKept {
+  Kernel holds;
+  Item* items;
+  Index* count;
+  CDEM_HD void operator()(One i) const { count[i.i] = holds(items[i.i]) ? 1 : 0; }
+};
+template <class Item>
+struct PutKept {
+  const Index* first;
+  const Item* items;
+  Item* kept;
+  CDEM_HD void operator()(One i) const {
+    if (first[i.i] < first[i.i + 1]) kept[first[i.i]] = items[i.i];
+  }
+};
+template <class Item, class Kernel>
+void keep_items(Queue queue, const Kernel& kernel, Column<Item>& items) {
+  const Index count = Index(items.size());
+  Index* const first = scratch<Index>(std::size_t(count) + 1);
+  for_each_item(queue, count, CountKept<Item, Kernel>{kernel, items.data(), first + 1});
+  Column<Item> kept;
+  kept.renew(scan(queue, count, first + 1, first));
+  for_each_item(queue, count, PutKept<Item>{first, items.data(), kept.data()});
+  finish(queue);  // before the memory of the items is given back
+  items.swap(kept);
 }
 
 #endif

@@ -56,6 +56,16 @@ Real column_sum(Queue queue, const Column<Real>& column);
 template <class Kernel>
 void select_items(Queue queue, Index count, const Kernel& kernel, Column<Index>& list);
 
+/// List the items of rows, row after row: `kernel.visit(row, act)` calls act(item) for those of a
+/// row, the same ones whenever it is called. Waits for how many they are.
+template <class Item, class Kernel>
+void list_items(Queue queue, Index rows, const Kernel& kernel, Column<Item>& items);
+
+/// Keep the items of a list for which `kernel(item)` holds, in order; it may change an item. Waits
+/// for how many they are.
+template <class Item, class Kernel>
+void keep_items(Queue queue, const Kernel& kernel, Column<Item>& items);
+
 /// Sort pairs by their keys; pairs of one key stay in order.
 void sort_pairs(Queue queue, Index count, std::uint64_t* keys, Index* values);
 

@@ -1,27 +1,91 @@
 // bonded_overlaps.hpp - faces and vertices that bonds of overlapping faces keep from the search.
 #pragma once
 
-#include <algorithm>
-#include <utility>
-#include <vector>
+#include <cstdint>
 
+#include "core/base/column.hpp"
 #include "core/base/lanes.hpp"
+#include "core/records/pair_status.hpp"
 
 namespace cdem {
 
 struct Model;
 struct State;
 
-/// Faces and vertices that bonds of overlaps hold, hinges left out, as sorted keys.
-struct Bonded {
-  using Pairs = std::vector<std::pair<Index, Index>>;
-  Pairs faces;     // exposed face and the one it is bonded to
-  Pairs vertices;  // node of a bonded face and exposed face that it is bonded to
+/// Two indices as one number.
+CDEM_HD inline std::uint64_t key_of(Index a, Index b) {
+  return std::uint64_t(std::uint32_t(a)) << 32 | std::uint32_t(b);
+}
 
-  static bool among(const Pairs& pairs, Index a, Index b) {
-    return std::binary_search(pairs.begin(), pairs.end(), std::pair(a, b));
+/// Is a key among ascending ones? Not std::binary_search, whose steps CUDA 13 leaves out in a
+/// kernel, without a word.
+CDEM_HD inline bool has_key(const std::uint64_t* keys, Index count, std::uint64_t key) {
+  Index low = 0, high = count;
+  while (low < high) {
+    const Index middle = low + (high - low) / 2;
+    if (keys[middle] < key)
+      low = middle + 1;
+    else
+      high = middle;
+  }
+  return low < count && keys[low] == key;
+}
+
+/// The kernels' view of Bonded.
+struct BondedView {
+  const std::uint64_t *face_keys, *vertex_keys;
+  Index face_count, vertex_count;
+
+  /// Do bonds hold exposed face x to y?
+  CDEM_HD bool faces(Index x, Index y) const {
+    return has_key(face_keys, face_count, key_of(x, y));
+  }
+  /// Do bonds hold a face with this node to exposed face y?
+  CDEM_HD bool vertices(Index node, Index y) const {
+    return has_key(vertex_keys, vertex_count, key_of(node, y));
   }
 };
-Bonded live_overlaps(const Model& m, const State& s);
+
+/// Faces and vertices that bonds of overlaps hold, hinges left out, as ascending keys.
+struct Bonded {
+  Column<std::uint64_t> faces;     // exposed face and the one it is bonded to
+  Column<std::uint64_t> vertices;  // node of a bonded face and exposed face that it is bonded to
+
+  BondedView view() const {
+    return {.face_keys = faces.data(),
+            .vertex_keys = vertices.data(),
+            .face_count = Index(faces.size()),
+            .vertex_count = Index(vertices.size())};
+  }
+};
+Bonded live_overlaps(const Model& model, const State& state);
+
+/// Is a pair bonded, and no hinge?
+struct IsBonded {
+  const Flag* status;
+  CDEM_HD bool operator()(One pair) const {
+    return PairStatus(status[pair.i]) == PairStatus::bonded;
+  }
+};
+
+/// Write the keys of the sides of bonded overlaps: 2 of faces and 8 of vertices each.
+struct WriteBondedKeys {
+  const Index* bonded;        // numbers of overlaps
+  const Index* pair_faces;    // [overlap][2]
+  const Index* face_nodes;    // [face][4]
+  const Index* face_exposed;  // place or -1
+  std::uint64_t *faces, *vertices;
+
+  CDEM_HD void operator()(One item) const {
+    const Index* const pair = pair_faces + 2 * std::size_t(bonded[item.i]);
+    for (Index side = 0; side < 2; ++side) {
+      const std::size_t row = 2 * std::size_t(item.i) + side;
+      const Index face = pair[side], mate = face_exposed[pair[1 - side]];
+      faces[row] = key_of(face_exposed[face], mate);
+      for (Index k = 0; k < 4; ++k)
+        vertices[4 * row + k] = key_of(face_nodes[4 * std::size_t(face) + k], mate);
+    }
+  }
+};
 
 }  // namespace cdem

@@ -1,6 +1,7 @@
 // bonds.cpp - the loops over kernels of this stage, instantiated. Compiled as C++, and as CUDA.
 #include "core/base/primitive_loops.hpp"
 #include "core/bonds/bond_dashpots.hpp"
+#include "core/bonds/bonded_overlaps.hpp"
 #include "core/bonds/broken_pairs.hpp"
 
 namespace cdem {
@@ -9,6 +10,8 @@ template bool any_item(Queue, Index, const HasJumped&);
 template bool any_item(Queue, Index, const HasMovedFar&);
 template void select_items(Queue, Index, const HasMovedFar&, Column<Index>&);
 template void select_items(Queue, Index, const HoldsInPart&, Column<Index>&);
+template void select_items(Queue, Index, const IsBonded&, Column<Index>&);
+template void for_each_item(Queue, Index, const WriteBondedKeys&);
 template void for_each_lane(Queue, Index, Blocks, const BondDashpots<3>&);
 template void for_each_lane(Queue, Index, Blocks, const BondDashpots<4>&);
 template void for_each_item(Queue, Index, Blocks, const OverlapDashpots&);

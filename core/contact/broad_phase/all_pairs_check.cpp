@@ -59,7 +59,8 @@ class AllPairs {
         block(on_host(model.face_block)),
         reach(on_host(model.face_reach)),
         count(Index(state.search.exposed_face.size())),
-        bonded(live_overlaps(model, state)),
+        overlaps(live_overlaps(model, state)),
+        bonded(on_host(overlaps.view())),
         sides(side_boxes(model, state)) {}
 
   /// Contacts of an exposed face that either search has missed.
@@ -83,7 +84,7 @@ class AllPairs {
     std::vector<Index> others;
     for (Index t = 0; t < count; ++t)
       if (block[face(t)] != block[face(x)] && (is_movable(t) || is_movable(x)) && are_near(x, t) &&
-          !Bonded::among(bonded.faces, x, t))
+          !bonded.faces(x, t))
         others.push_back(t);
     return others;
   }
@@ -94,9 +95,8 @@ class AllPairs {
     for (Index k = 0; k < springs.faces.vertex_count(face(x)); ++k) {
       const Index node = springs.faces.vertex(face(x), k);
       open.clear();
-      std::copy_if(others.begin(), others.end(), std::back_inserter(open), [&](Index t) {
-        return !Bonded::among(bonded.vertices, node, t) && !passed.passes(x, k, t);
-      });
+      std::copy_if(others.begin(), others.end(), std::back_inserter(open),
+                   [&](Index t) { return !bonded.vertices(node, t) && !passed.passes(x, k, t); });
       const FaceList list{open.data(), nullptr, Index(open.size())};
       Index target = springs.choose(x, k, list, &ignored);
       const Index before = springs.springs.target_before[4 * x + k];
@@ -145,7 +145,8 @@ class AllPairs {
   const OnHost<const Index> block;
   const OnHost<const Real> reach;
   const Index count;  // of exposed faces
-  const Bonded bonded;
+  const Bonded overlaps;
+  const BondedView bonded;  // of those
   const std::vector<Box> sides;
 };
 

@@ -1,48 +1,19 @@
-// bounding_boxes.hpp - which of many boxes overlap: a tree over their Morton order. Host code.
+// bounding_boxes.hpp - which of many boxes overlap: a tree over their Morton order.
 //
 // Departure from the paper's static cells (Section 4.1, Fig. 10): a tree does not care how much the
 // boxes differ in size, and was measured two to nine times faster than cells on the same boxes.
 #pragma once
 
-#include <algorithm>
-#include <bit>
 #include <cstdint>
-#include <utility>
-#include <vector>
 
+#include "core/base/column.hpp"
 #include "core/base/views.hpp"
+#include "core/contact/broad_phase/box.hpp"
 
 namespace cdem {
 
-struct Box {
-  Real low[3], high[3];
-
-  void include(const Vec3<Real>& p) {
-    const Real x[3] = {p.x, p.y, p.z};
-    for (int d = 0; d < 3; ++d) {
-      low[d] = std::min(low[d], x[d]);
-      high[d] = std::max(high[d], x[d]);
-    }
-  }
-  void include(const Box& b) {
-    for (int d = 0; d < 3; ++d) {
-      low[d] = std::min(low[d], b.low[d]);
-      high[d] = std::max(high[d], b.high[d]);
-    }
-  }
-  void inflate(Real by) {
-    for (int d = 0; d < 3; ++d) low[d] -= by, high[d] += by;
-  }
-  bool overlaps(const Box& b) const {
-    bool apart = false;
-    for (int d = 0; d < 3; ++d) apart = apart || low[d] > b.high[d] || b.low[d] > high[d];
-    return !apart;
-  }
-  static Box nothing() { return {{1e300, 1e300, 1e300}, {-1e300, -1e300, -1e300}}; }
-};
-
 /// Interleave the low 21 bits of three integers.
-inline std::uint64_t morton_code(std::uint64_t x, std::uint64_t y, std::uint64_t z) {
+CDEM_HD inline std::uint64_t morton_code(std::uint64_t x, std::uint64_t y, std::uint64_t z) {
   const auto spread = [](std::uint64_t v) {
     v &= 0x1fffff;
     v = (v | v << 32) & 0x1f00000000ffffull;
@@ -55,92 +26,155 @@ inline std::uint64_t morton_code(std::uint64_t x, std::uint64_t y, std::uint64_t
   return spread(x) | spread(y) << 1 | spread(z) << 2;
 }
 
-/// Groups of eight boxes, groups of eight groups, and so on, in Morton order of the centres.
-class BoxTree {
- public:
-  explicit BoxTree(const std::vector<Box>& boxes) {
-    sort(boxes);
-    std::vector<Box> level;
-    for (const Index i : order_) level.push_back(boxes[i]);
-    while (!level.empty()) {
-      level_first_.push_back(groups_.size());
-      std::vector<Box> above;
-      for (std::size_t i = 0; i < level.size(); i += fan) {
-        Group group;
-        above.push_back(Box::nothing());
-        for (std::size_t j = 0; j < fan && i + j < level.size(); ++j) {
-          const Box& box = level[i + j];
-          for (int d = 0; d < 3; ++d) group.low[d][j] = box.low[d], group.high[d][j] = box.high[d];
-          group.used |= 1u << j;
-          above.back().include(box);
-        }
-        groups_.push_back(group);
-      }
-      if (above.size() == 1) break;
-      level = std::move(above);
-    }
+/// Eight boxes, each bound of theirs side by side.
+struct BoxGroup {
+  static constexpr Index fan = 8;
+  alignas(64) Real low[3][fan], high[3][fan];
+  unsigned used;  // places, as bits
+
+  CDEM_HD static BoxGroup none() {
+    BoxGroup group;
+    for (int d = 0; d < 3; ++d)
+      for (Index j = 0; j < fan; ++j) group.low[d][j] = 0, group.high[d][j] = 0;
+    group.used = 0;
+    return group;
   }
+  CDEM_HD void put(Index j, const Box& box) {
+    for (int d = 0; d < 3; ++d) low[d][j] = box.low[d], high[d][j] = box.high[d];
+    used |= 1u << j;
+  }
+  CDEM_HD Box whole() const {
+    Box box = Box::nothing();
+    for (Index j = 0; j < fan; ++j)
+      if (used >> j & 1)
+        box.include(Box{{low[0][j], low[1][j], low[2][j]}, {high[0][j], high[1][j], high[2][j]}});
+    return box;
+  }
+  /// Which of them overlap a box, as bits. A box with NaN overlaps everything.
+  CDEM_HD unsigned overlaps(const Box& box) const {
+    unsigned bits = 0;
+#if defined(__CUDACC__)
+    for (Index j = 0; j < fan; ++j) {
+      bool apart = false;
+      for (int d = 0; d < 3; ++d)
+        apart = apart || low[d][j] > box.high[d] || high[d][j] < box.low[d];
+      bits |= unsigned(!apart) << j;
+    }
+#else
+    for (Index j = 0; j < fan; j += lanes) {
+      Mask apart{};
+      for (int d = 0; d < 3; ++d) {
+        apart = apart | (InTable{low[d], 0}.at(0, Lane{j}) > Pack(box.high[d])) |
+                (InTable{high[d], 0}.at(0, Lane{j}) < Pack(box.low[d]));
+      }
+      bits |= lane_bits(!apart) << j;
+    }
+#endif
+    return bits & used;
+  }
+};
+
+/// Groups of eight boxes, groups of eight groups, and so on, in Morton order of the centres.
+struct BoxTree {
+  static constexpr Index most_levels = 11;  // 8^11 boxes are more than an Index can count
+  const Index* order;                       // box at a place of the lowest groups
+  const BoxGroup* groups;                   // level after level, from the lowest
+  Index level_first[most_levels], levels;   // where the groups of a level begin
 
   /// Call visit(i) for every box that overlaps `box`.
   template <class Visit>
-  void query(const Box& box, Visit&& visit) const {
-    if (!order_.empty()) descend(box, level_first_.size() - 1, 0, visit);
+  CDEM_HD void query(const Box& box, const Visit& visit) const {
+    if (levels == 0) return;
+    Index at[most_levels];       // group of a level
+    unsigned open[most_levels];  // places of it that are still to be visited, as bits
+    Index level = levels - 1;
+    at[level] = 0;
+    open[level] = groups[level_first[level]].overlaps(box);
+    while (level < levels) {
+      if (!open[level]) {
+        ++level;
+        continue;
+      }
+      const Index j = lowest(open[level]), place = BoxGroup::fan * at[level] + j;
+      open[level] &= open[level] - 1;
+      if (level == 0) {
+        visit(order[place]);
+        continue;
+      }
+      at[--level] = place;
+      open[level] = groups[level_first[level] + place].overlaps(box);
+    }
   }
 
  private:
-  static constexpr std::size_t fan = 8;
-
-  /// Eight boxes, each bound of theirs side by side.
-  struct Group {
-    alignas(64) Real low[3][fan] = {}, high[3][fan] = {};
-    unsigned used = 0;  // places, as bits
-
-    /// Which of them overlap a box, as bits. A box with NaN overlaps everything.
-    unsigned overlaps(const Box& box) const {
-      unsigned bits = 0;
-      for (Index j = 0; j < Index(fan); j += lanes) {
-        Mask apart{};
-        for (int d = 0; d < 3; ++d) {
-          apart = apart | (InTable{low[d], 0}.at(0, Lane{j}) > Pack(box.high[d])) |
-                  (InTable{high[d], 0}.at(0, Lane{j}) < Pack(box.low[d]));
-        }
-        bits |= lane_bits(!apart) << j;
-      }
-      return bits & used;
-    }
-  };
-
-  void sort(const std::vector<Box>& boxes) {
-    Box all = Box::nothing();
-    for (const Box& b : boxes) all.include(b);
-    std::vector<std::pair<std::uint64_t, Index>> keys(boxes.size());
-    for (std::size_t i = 0; i < boxes.size(); ++i) {
-      std::uint64_t cell[3];
-      for (int d = 0; d < 3; ++d) {
-        const Real extent = std::max(all.high[d] - all.low[d], 1e-300);
-        const Real middle = 0.5 * (boxes[i].low[d] + boxes[i].high[d]);
-        cell[d] = std::uint64_t((middle - all.low[d]) / extent * 2097151.0);
-      }
-      keys[i] = {morton_code(cell[0], cell[1], cell[2]), Index(i)};
-    }
-    std::sort(keys.begin(), keys.end());
-    for (const auto& key : keys) order_.push_back(key.second);
+  CDEM_HD static Index lowest(unsigned bits) {
+#if defined(__CUDA_ARCH__)
+    return __ffs(int(bits)) - 1;
+#else
+    return __builtin_ctz(bits);
+#endif
   }
-  template <class Visit>
-  void descend(const Box& box, std::size_t level, std::size_t i, Visit& visit) const {
-    unsigned bits = groups_[level_first_[level] + i].overlaps(box);
-    for (; bits; bits &= bits - 1) {
-      const std::size_t j = fan * i + std::size_t(std::countr_zero(bits));
-      if (level == 0)
-        visit(order_[j]);
-      else
-        descend(box, level - 1, j, visit);
-    }
-  }
+};
 
-  std::vector<Index> order_;
-  std::vector<Group> groups_;
-  std::vector<std::size_t> level_first_;
+/// The arrays of a tree.
+class BoxTreeColumns {
+ public:
+  void make(Queue queue, const Column<Box>& boxes);
+  BoxTree tree() const;
+
+ private:
+  Column<Index> order_;
+  Column<std::uint64_t> codes_;
+  Column<BoxGroup> groups_;
+  Index level_first_[BoxTree::most_levels] = {}, levels_ = 0;
+};
+
+/// Put boxes, or groups, into groups of eight.
+struct GroupBoxes {
+  Index count;         // of boxes
+  const Index* order;  // of them; null: as they are
+  const Box* boxes;
+  BoxGroup* groups;
+
+  CDEM_HD void operator()(One g) const {
+    BoxGroup group = BoxGroup::none();
+    for (Index j = 0, i = BoxGroup::fan * g.i; j < BoxGroup::fan && i < count; ++j, ++i)
+      group.put(j, boxes[order ? order[i] : i]);
+    groups[g.i] = group;
+  }
+};
+struct GroupGroups {
+  Index count;  // of groups below
+  const BoxGroup* below;
+  BoxGroup* groups;
+
+  CDEM_HD void operator()(One g) const {
+    BoxGroup group = BoxGroup::none();
+    for (Index j = 0, i = BoxGroup::fan * g.i; j < BoxGroup::fan && i < count; ++j, ++i)
+      group.put(j, below[i].whole());
+    groups[g.i] = group;
+  }
+};
+
+/// Codes of the centres of boxes, in cells of the box that holds all.
+struct FindMortonCodes {
+  const Box* boxes;
+  const BoxGroup* all;  // the highest group
+  Index* order;
+  std::uint64_t* codes;
+
+  CDEM_HD void operator()(One i) const {
+    const Box frame = all->whole();
+    std::uint64_t cell[3];
+    for (int d = 0; d < 3; ++d) {
+      const Real extent = max_of(frame.high[d] - frame.low[d], 1e-300);
+      const Real middle = 0.5 * (boxes[i.i].low[d] + boxes[i.i].high[d]);
+      const Real place = (middle - frame.low[d]) / extent * 2097151.0;
+      cell[d] = place > 0 ? std::uint64_t(min_of(place, 2097151.0)) : 0;
+    }
+    codes[i.i] = morton_code(cell[0], cell[1], cell[2]);
+    order[i.i] = i.i;
+  }
 };
 
 }  // namespace cdem

@@ -1,14 +1,10 @@
 // element_patch.hpp - the exposed faces of one element: where they are, and how they may move.
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
 
-#include "core/base/uninitialized.hpp"
-#include "core/contact/broad_phase/bounding_boxes.hpp"
+#include "core/contact/broad_phase/box.hpp"
 #include "core/contact/geometry/face.hpp"
-#include "core/model/model.hpp"
-#include "core/model/state.hpp"
 
 namespace cdem {
 
@@ -29,16 +25,14 @@ struct ExposedFace {
   Box box;  // of the whole motion
 };
 
-void list_exposed_faces(const Model& model, const State& state, Unset<ExposedFace>& exposed);
-
 /// How much the indentation of the faces at an edge takes from the ends of the edge, at least, and
 /// how far it moves it aside, at most, with room for strain of the faces; least L  [m].
 struct Indented {
-  Real inset = 1e300, shift = 0, length = 1e300;
+  Real inset, shift, length;
 
-  Indented and_of(const Indented& other) const {
-    return {std::min(inset, other.inset), std::max(shift, other.shift),
-            std::min(length, other.length)};
+  CDEM_HD static Indented none() { return {1e300, 0, 1e300}; }
+  CDEM_HD Indented and_of(const Indented& other) const {
+    return {min_of(inset, other.inset), max_of(shift, other.shift), min_of(length, other.length)};
   }
 };
 
@@ -47,11 +41,11 @@ struct Patch {
   using Place = std::int8_t;  // among the few of a patch or a face
   /// An edge: the faces of the patch that meet there, and which of their sides it is.
   struct Edge {
-    Index id = -1;
-    Place faces = 0;
-    Place face[2] = {}, side[2] = {};
-    Place vertex[2] = {};
-    Indented indented = {};
+    Index id;
+    Place faces;
+    Place face[2], side[2];
+    Place vertex[2];
+    Indented indented;
   };
   Index face_count, vertex_count, edge_count;
   Index face[6];  // exposed
@@ -67,11 +61,20 @@ struct Patch {
   bool movable;
   bool whole;  // are all faces of the element exposed?
   Box box;     // of the whole motion
-};
 
-/// Group the exposed faces by the elements behind them.
-void list_patches(const Model& model, const State& state, const Unset<ExposedFace>& exposed,
-                  Unset<Patch>& patches);
+  /// Place of a node among the vertices, or how many there are.
+  CDEM_HD Index vertex_at(Index node) const {
+    Index v = 0;
+    while (v < vertex_count && vertex[v] != node) ++v;
+    return v;
+  }
+  /// Place of an edge of the mesh among the edges, or how many there are.
+  CDEM_HD Index edge_at(Index id) const {
+    Index e = 0;
+    while (e < edge_count && edge[e].id != id) ++e;
+    return e;
+  }
+};
 
 /// A side of an exposed face. The faces that meet there fall away from a contact: its normal must
 /// lie between theirs, as given by `fall` (see ResolveTargetEdges::cones_hold).
@@ -84,8 +87,5 @@ struct ExposedSide {
   Real length;                   // [m]
   Real rotation, rotation_face, rotation_across;  // of the side and of both faces
 };
-
-void list_exposed_sides(const State& state, const Unset<ExposedFace>& exposed,
-                        Unset<ExposedSide>& sides);
 
 }  // namespace cdem

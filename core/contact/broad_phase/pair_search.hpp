@@ -5,20 +5,32 @@
 // test leaves room for that motion: a pair that it rejects cannot come into contact before.
 #pragma once
 
-#include "core/contact/broad_phase/element_patch.hpp"
-#include "core/contact/broad_phase/pair_buffer.hpp"
+#include "core/base/column.hpp"
+#include "core/contact/broad_phase/edge_edge_pairs.hpp"
+#include "core/contact/broad_phase/vertex_face_pairs.hpp"
 #include "core/model/model.hpp"
 #include "core/model/state.hpp"
 
 namespace cdem {
 
-/// Work arrays of a search and the pairs that it finds.
+/// Work arrays of a search, and the pairs that it finds.
 struct PairSearch {
-  Unset<ExposedFace> exposed;
-  Unset<ExposedSide> sides;
-  Unset<Patch> patches;
-  PairBuffers found;
+  Column<ExposedFace> exposed;
+  Column<ExposedSide> sides;  // [exposed][4]
+  Column<Patch> patches;
+  Column<Index> edge_sides;  // of the edges of all patches, see EdgePairs
+  Bonded bonded;
+  Column<PatchPair> pairs;  // of a movable patch with a later one, or one that is not movable
+  Column<VertexFaceItem> vertex_faces;
+  Column<MovingEdge> moving;  // edges of all patches
+  Column<EdgeItem> edges;
 };
+
+PairContext pair_context(const Model& model, const State& state, const PairSearch& search);
+
+/// Make the exposed faces, their sides and patches.
+void list_patches(const Model& model, const State& state, PairSearch& search);
+/// And the pairs that may touch.
 void search_pairs(const Model& model, const State& state, PairSearch& search);
 
 }  // namespace cdem

@@ -7,20 +7,9 @@
 
 namespace cdem {
 
-/// Predictions of the outer list, for host code.
-class PredictedNodes {
- public:
-  explicit PredictedNodes(const State& s)
-      : place_(on_host(s.search.outer.node_predicted)), rows_(on_host(s.search.outer.predicted)) {}
-  bool has(Index node) const { return place_[node] >= 0; }
-  PredictedNode at(Index node) const {
-    return PredictedNode::at(rows_.data() + 8 * std::size_t(place_[node]));
-  }
-
- private:
-  OnHost<const Index> place_;
-  OnHost<const Real> rows_;
-};
+inline PredictedNodes predicted_nodes(const State& s) {
+  return {s.search.outer.node_predicted.data(), s.search.outer.predicted.data()};
+}
 
 /// Predict the paths of the nodes of exposed faces, straight on with the rigid motion of their
 /// elements (which leaves the elements' vibrations out), and their skins: the deviation that the

@@ -21,6 +21,17 @@ struct PredictedNode {
   }
 };
 
+/// Predictions of the outer list.
+struct PredictedNodes {
+  const Index* place;  // [node] among the predicted ones, or -1
+  const Real* rows;    // of PredictedNode
+
+  CDEM_HD bool has(Index node) const { return place[node] >= 0; }
+  CDEM_HD PredictedNode at(Index node) const {
+    return PredictedNode::at(rows + 8 * std::size_t(place[node]));
+  }
+};
+
 /// The inner list looks ahead for this part of the lookahead time, and gives every vertex this part
 /// of its skin at most, see pair_list/inner_list.hpp.
 inline constexpr Real inner_horizon = 0.06, inner_skin = 0.5;

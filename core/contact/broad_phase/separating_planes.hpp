@@ -2,46 +2,77 @@
 // the other.
 #pragma once
 
-#include <algorithm>
+#include <cstdint>
 
 #include "core/bonds/bonded_overlaps.hpp"
 #include "core/contact/broad_phase/element_patch.hpp"
-#include "core/contact/broad_phase/pair_buffer.hpp"
-#include "core/contact/broad_phase/predicted_motion.hpp"
-#include "core/contact/geometry/views.hpp"
+#include "core/contact/broad_phase/predicted_node.hpp"
+#include "core/contact/geometry/face_geometry.hpp"
+#include "core/records/rules.hpp"
 
 namespace cdem {
 
-/// Data for the search of one pair of patches.
+/// Data for the search of pairs of patches.
 struct PairContext {
-  const Model& m;
-  const State& s;
-  const Unset<ExposedFace>& exposed;
-  const Unset<ExposedSide>& sides;
-  const Bonded& bonded;
-  const FaceColumns faces = on_host(face_columns(m, s));
-  const PredictedNodes predicted{s};
-  const OnHost<const Real> face_reach = on_host(m.face_reach);
-  const OnHost<const Index> target = on_host(s.springs.target), edge_first = on_host(s.edges.first),
-                            edge_contact = on_host(s.edges.contact);
+  SearchRules rules;
+  Real lookahead_time;  // [s]
+  FaceColumns faces;
+  PredictedNodes predicted;
+  const Real* face_reach;      // [face]  [m]
+  const ExposedFace* exposed;  // [exposed]
+  const ExposedSide* sides;    // [exposed][4]
+  const Patch* patches;
+  BondedView bonded;
+  const Index *target, *edge_first, *edge_contact;  // [slot], [exposed + 1], rows of EdgeContact
+};
+
+/// Parts of two patches that may touch, as bits: in `row` those faces of the second that may touch
+/// a face of the first; the vertices and edges of either that a plane keeps out of reach of the
+/// other; in `listed` the pairs of faces on the lists, see ListedFacePairs.
+struct PatchPair {
+  Index one, other;
+  std::uint16_t edge[2];
+  std::uint8_t row[6], vertex[2];
+  std::uint64_t listed[2];
+
+  /// May face i of patch `of` and face j of the other touch?
+  CDEM_HD bool may_meet(Index of, Index i, Index j) const {
+    return (of == 0 ? row[i] >> j : row[j] >> i) & 1;
+  }
+  /// The faces of the second that may touch one at an edge of the first, and the faces at an edge.
+  CDEM_HD Index across(const Patch::Edge& e) const {
+    return row[e.face[0]] | row[e.face[e.faces - 1]];
+  }
+  CDEM_HD static Index at(const Patch::Edge& e) {
+    return 1 << e.face[0] | 1 << e.face[e.faces - 1];
+  }
+};
+
+/// Pairs of faces of two patches that lists have: in word 0 with those of the first patch as
+/// mothers, in word 1 with those of the second. A bit for each face of the mother and each of the
+/// other.
+struct ListedFacePairs {
+  CDEM_HD static std::uint64_t bit(Index mother, Index face) {
+    return std::uint64_t(1) << (6 * mother + face);
+  }
 };
 
 inline constexpr Real last_step = 1.05;  // the last step counts 1.5 times, see SearchRules::entry
 
 /// How far a vertex of one face may move as seen from the other  [m].
-inline Real motion_between(const ExposedFace& x, const ExposedFace& y) {
+CDEM_HD inline Real motion_between(const ExposedFace& x, const ExposedFace& y) {
   return norm(x.displacement - y.displacement) + x.deviation + y.deviation;
 }
 
 /// How far two predicted nodes may move apart until the next rebuild  [m].
-inline Real may_part(const PairContext& f, Index a, Index b) {
+CDEM_HD inline Real may_part(const PairContext& f, Index a, Index b) {
   const PredictedNode x = f.predicted.at(a), y = f.predicted.at(b);
-  return f.s.search.outer.lookahead_time * norm(x.velocity - y.velocity) + x.skin + y.skin;
+  return f.lookahead_time * norm(x.velocity - y.velocity) + x.skin + y.skin;
 }
 
 /// How far their predicted paths part while an inner list holds  [m].
-inline Real ways_part_soon(const PairContext& f, Index a, Index b) {
-  return inner_horizon * f.s.search.outer.lookahead_time *
+CDEM_HD inline Real ways_part_soon(const PairContext& f, Index a, Index b) {
+  return inner_horizon * f.lookahead_time *
          norm(f.predicted.at(a).velocity - f.predicted.at(b).velocity);
 }
 
@@ -49,30 +80,70 @@ inline Real ways_part_soon(const PairContext& f, Index a, Index b) {
 /// least and at most  [m].
 struct GapChange {
   Real least, most;
-  GapChange(const ExposedFace& x, const ExposedFace& y, const Vec3<Real>& n) {
+  CDEM_HD GapChange(const ExposedFace& x, const ExposedFace& y, const Vec3<Real>& n) {
     const Real approach = dot(n, x.displacement - y.displacement),
                deviation = x.deviation + y.deviation;
-    least = std::min(approach, 0.0) - deviation;
-    most = std::max(approach, 0.0) + deviation;
+    least = min_of(approach, 0.0) - deviation;
+    most = max_of(approach, 0.0) + deviation;
   }
 };
 
 /// Farthest that an edge of one patch may be from the other at a rebuild, if it may be in contact
 /// before the next one  [m]; without the displacements, which have a direction. It holds for
 /// vertices as well that are not inside a block.
-inline Real farthest_crossing(const SearchRules& rules, const Patch& a, const Patch& b) {
+CDEM_HD inline Real farthest_crossing(const SearchRules& rules, const Patch& a, const Patch& b) {
   return last_step * (a.deviation + b.deviation) + a.deepest + b.deepest + rules.lifted +
-         (rules.entry + 2 * rules.tolerance) * std::min(a.length, b.length) +
-         2 * rules.indentation * std::max(a.reach, b.reach);
+         (rules.entry + 2 * rules.tolerance) * min_of(a.length, b.length) +
+         2 * rules.indentation * max_of(a.reach, b.reach);
 }
 
 /// The same for anything. A vertex that is inside a block may begin deeper, at the nearest face
 /// (see ResolveTargets), and so be farther from the element behind it than an edge, unless that
 /// element is the block.
-inline Real farthest_contact(const SearchRules& rules, const Patch& a, const Patch& b) {
+CDEM_HD inline Real farthest_contact(const SearchRules& rules, const Patch& a, const Patch& b) {
   return farthest_crossing(rules, a, b) +
-         (a.whole && b.whole ? 0.0 : rules.depth * std::min(a.length, b.length));
+         (a.whole && b.whole ? 0.0 : rules.depth * min_of(a.length, b.length));
 }
+
+/// Heights of the vertices of a patch along a normal  [m].
+struct Heights {
+  Real at[8], least = 1e300, most = -1e300;
+  CDEM_HD Heights(const PairContext& f, const Patch& p, const Vec3<Real>& n,
+                  const Vec3<Real>& origin) {
+    for (Index v = 0; v < p.vertex_count; ++v) {
+      at[v] = dot(n, f.faces.nodes.position(p.vertex[v]) - origin);
+      least = min_of(at[v], least);
+      most = max_of(at[v], most);
+    }
+  }
+};
+
+/// Does no plane along a face of either patch hold the two of a pair apart until the next rebuild?
+struct MayMeet {
+  PairContext f;
+
+  CDEM_HD bool operator()(const PatchPair& pair) const {
+    const Patch &a = f.patches[pair.one], &b = f.patches[pair.other];
+    const Real room = farthest_contact(f.rules, a, b);
+    const Vec3<Real> closing = last_step * (b.displacement - a.displacement);
+    return !hold_apart(a, a, b, closing, room) && !hold_apart(b, a, b, closing, room);
+  }
+
+ private:
+  /// Does a plane along a face of one of them?
+  CDEM_HD bool hold_apart(const Patch& of, const Patch& a, const Patch& b,
+                          const Vec3<Real>& closing, Real room) const {
+    for (Index i = 0; i < of.face_count; ++i) {
+      const ExposedFace& face = f.exposed[of.face[i]];
+      const Heights of_a(f, a, face.normal, face.center), of_b(f, b, face.normal, face.center);
+      const Real closer = dot(face.normal, closing);
+      if (of_b.least - of_a.most + min_of(closer, 0.0) > room ||
+          of_a.least - of_b.most - max_of(closer, 0.0) > room)
+        return true;
+    }
+    return false;
+  }
+};
 
 /// Vertices and edges of two patches that a plane along a face keeps out of the reach of the other
 /// until the next rebuild: no such edge can touch, and no such vertex that is outside the block.
@@ -88,36 +159,115 @@ struct SeparatedParts {
   bool nothing_on[2][6];  // face: none of its vertices, nor of its edges
   bool no_vertex_on[2][6];
 
-  SeparatedParts(const PairContext& f, const Patch& a, const Patch& b);
+  CDEM_HD SeparatedParts(const PairContext& f, const Patch& a, const Patch& b) {
+    const Real room = farthest_crossing(f.rules, a, b);
+    const Vec3<Real> closing = last_step * (b.displacement - a.displacement);
+    unsigned bit = 1;
+    for (Index k = 0; k < 2; ++k) {
+      const Patch& of = k == 0 ? a : b;
+      for (Index i = 0; i < of.face_count; ++i, bit <<= 2)
+        separate(f, f.exposed[of.face[i]], a, b, closing, room, bit);
+    }
+    spread(a, 0, b.whole);
+    spread(b, 1, a.whole);
+  }
   /// Can nothing of two faces touch, of the first patch and of the second?
-  bool hold_apart(Index x, Index y) const {
+  CDEM_HD bool hold_apart(Index x, Index y) const {
     return (nothing_on[0][x] && no_vertex_on[1][y]) || (nothing_on[1][y] && no_vertex_on[0][x]);
   }
 
  private:
-  void spread(const Patch& p, int of, bool other_is_whole);
+  /// By planes along a face.
+  CDEM_HD void separate(const PairContext& f, const ExposedFace& face, const Patch& a,
+                        const Patch& b, const Vec3<Real>& closing, Real room, unsigned bit) {
+    const Vec3<Real>& n = face.normal;
+    const Heights of_a(f, a, n, face.center), of_b(f, b, n, face.center);
+    const Real closer = dot(n, closing);
+    const Real up = room + max_of(closer, 0.0), down = room - min_of(closer, 0.0);
+    for (Index v = 0; v < a.vertex_count; ++v)
+      vertex[0][v] |=
+          (of_a.at[v] - of_b.most > up ? bit : 0) | (of_b.least - of_a.at[v] > down ? bit << 1 : 0);
+    for (Index v = 0; v < b.vertex_count; ++v)
+      vertex[1][v] |=
+          (of_b.at[v] - of_a.most > down ? bit : 0) | (of_a.least - of_b.at[v] > up ? bit << 1 : 0);
+  }
+  CDEM_HD void spread(const Patch& p, Index of, bool other_is_whole) {
+    for (Index e = 0; e < p.edge_count; ++e)
+      edge[of][e] = vertex[of][p.edge[e].vertex[0]] & vertex[of][p.edge[e].vertex[1]];
+    for (Index v = 0; v < p.vertex_count && !other_is_whole; ++v) vertex[of][v] = 0;
+    for (Index i = 0; i < p.face_count; ++i) {
+      unsigned all = ~0u;
+      no_vertex_on[of][i] = true;
+      for (Index v = 0; v < p.vertex_count; ++v) {
+        if (p.corner[v][i] < 0) continue;
+        all &= vertex[of][v];
+        no_vertex_on[of][i] = no_vertex_on[of][i] && vertex[of][v];
+      }
+      nothing_on[of][i] = all;
+    }
+  }
 };
 
-/// Which faces of two patches may touch, bit by bit: row = face of the first.
-struct FacePairMask {
-  int row[6] = {};
-  FacePairMask(const PairContext& f, const Patch& a, const Patch& b,
-               const SeparatedParts& separated);
-  bool any() const { return row[0] || row[1] || row[2] || row[3] || row[4] || row[5]; }
-  /// The faces of the second that may touch one at an edge of the first, and the faces at an edge.
-  int of(const Patch::Edge& e) const { return row[e.face[0]] | row[e.face[e.faces - 1]]; }
-  static int at(const Patch::Edge& e) { return 1 << e.face[0] | 1 << e.face[e.faces - 1]; }
-};
+/// Find the parts of a pair of patches that may touch: are there any faces?
+struct FindMeetingParts {
+  PairContext f;
+  bool list_all;  // pairs of faces: those without a vertex or an edge too
 
-/// Faces of two patches that lists have for each other, bit by bit: `row[reverse]`, with those of
-/// the first patch as mothers, and then with those of the second.
-struct ListedFacePairs {
-  int row[2][6] = {};
+  CDEM_HD bool operator()(PatchPair& pair) const {
+    const Patch &a = f.patches[pair.one], &b = f.patches[pair.other];
+    const SeparatedParts separated(f, a, b);
+    bool any = false;
+    for (Index i = 0; i < 6; ++i) {
+      pair.row[i] = i < a.face_count ? faces_that_meet(separated, a.face[i], i, b) : 0;
+      any = any || pair.row[i];
+    }
+    if (!any) return false;
+    for (Index of = 0; of < 2; ++of) {
+      pair.vertex[of] = 0, pair.edge[of] = 0;
+      for (Index v = 0; v < 8; ++v) pair.vertex[of] |= (separated.vertex[of][v] != 0) << v;
+      for (Index e = 0; e < 12; ++e) pair.edge[of] |= (separated.edge[of][e] != 0) << e;
+      pair.listed[of] = 0;
+    }
+    if (list_all) list_faces(pair);
+    return true;
+  }
 
-  void add(bool reverse, Index mother, Index face) { row[reverse][mother] |= 1 << face; }
-  /// All that may touch, with or without a vertex or an edge.
-  void add(const FacePairMask& pairs);
-  void list(const Patch& a, const Patch& b, PairBuffer& found) const;
+ private:
+  CDEM_HD Index faces_that_meet(const SeparatedParts& separated, Index x, Index i,
+                                const Patch& b) const {
+    Index bits = 0;
+    for (Index j = 0; j < b.face_count; ++j)
+      if (!separated.hold_apart(i, j) && may_touch(f.exposed[x], f.exposed[b.face[j]]) &&
+          !f.bonded.faces(x, b.face[j]))
+        bits |= 1 << j;
+    return bits;
+  }
+  /// May anything of the two faces touch before the next rebuild?
+  CDEM_HD bool may_touch(const ExposedFace& x, const ExposedFace& y) const {
+    return x.block != y.block && (x.movable || y.movable) &&
+           dot(x.normal, y.normal) < -f.rules.opposing + x.rotation + y.rotation && !apart(x, y) &&
+           !apart(y, x);
+  }
+  /// All vertices of x stay above the plane of y until the next rebuild: they cannot touch.
+  CDEM_HD bool apart(const ExposedFace& x, const ExposedFace& y) const {
+    Real lowest = 1e300, span2 = 0;
+    for (Index k = 0; k < x.shape.count(); ++k) {
+      const Vec3<Real> arm = x.shape.x[k] - y.center;
+      lowest = min_of(dot(y.normal, arm), lowest);
+      span2 = max_of(dot(arm, arm), span2);
+    }
+    if (lowest < 0) return false;
+    const Real turned = y.rotation * (sqrt_of(span2) + motion_between(x, y));
+    return lowest + GapChange(x, y, y.normal).least > turned + y.warpage + f.rules.lifted;
+  }
+  CDEM_HD static void list_faces(PatchPair& pair) {
+    for (Index i = 0; i < 6; ++i)
+      for (Index j = 0; j < 6; ++j) {
+        if (!pair.may_meet(0, i, j)) continue;
+        pair.listed[0] |= ListedFacePairs::bit(i, j);
+        pair.listed[1] |= ListedFacePairs::bit(j, i);
+      }
+  }
 };
 
 }  // namespace cdem

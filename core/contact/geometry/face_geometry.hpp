@@ -161,7 +161,7 @@ struct UpdateFaceGeometry {
 };
 
 /// Faces of one block whose normals have a larger cosine than this (2.6 degrees) meet in no edge.
-inline constexpr Real coplanar_faces = 0.999;
+inline constexpr Real coplanar_faces = 0.999, coplanar_angle = 0.044725087168733454;  // [rad]
 
 /// What comes past the rim of a face lies on the face beside it, where the way out of the block is
 /// shorter. A contact that began with the face all the same would stop it.

@@ -141,7 +141,11 @@ class Overlaps {
 
   /// Pairs of elements that are not held.
   std::vector<Found> search_all() const {
-    const BoxTree tree(boxes_);
+    Column<Box> boxes;
+    boxes.assign(boxes_);
+    BoxTreeColumns columns;
+    columns.make({}, boxes);
+    const BoxTree tree = on_host(columns.tree());
     std::vector<std::vector<Found>> by_thread(omp_get_max_threads());
 #pragma omp parallel if (element_count_ >= worth_threads)
     {

@@ -16,9 +16,22 @@ Box random_box(Random& random, Real spread, Real size) {
   return box;
 }
 
-std::vector<Index> found(const BoxTree& tree, const Box& box) {
+/// A tree of boxes of the host.
+struct Tree {
+  Column<Box> boxes;
+  BoxTreeColumns columns;
+  BoxTree tree;
+
+  explicit Tree(const std::vector<Box>& list) {
+    boxes.assign(list);
+    columns.make({}, boxes);
+    tree = on_host(columns.tree());
+  }
+};
+
+std::vector<Index> found(const Tree& of, const Box& box) {
   std::vector<Index> list;
-  tree.query(box, [&](Index i) { list.push_back(i); });
+  of.tree.query(box, [&](Index i) { list.push_back(i); });
   std::sort(list.begin(), list.end());
   return list;
 }
@@ -83,7 +96,7 @@ TEST_CASE("a query finds the boxes that overlap, whatever their number and sizes
     std::vector<Box> boxes;
     for (Index i = 0; i < count; ++i)
       boxes.push_back(random_box(random, 5, i % 50 == 0 ? 20 : random.between(0.01, 3)));
-    const BoxTree tree(boxes);
+    const Tree tree(boxes);
     for (int k = 0; k < 50; ++k) {
       const Box box = random_box(random, 5, random.between(0, 8));
       CHECK(found(tree, box) == overlapping(boxes, box));
@@ -96,13 +109,13 @@ TEST_CASE("a query finds the boxes that overlap, whatever their number and sizes
 TEST_CASE("boxes at one place, or on a line, are found") {
   std::vector<Box> same(100, Box{{1, 1, 1}, {2, 2, 2}}), line;
   for (Index i = 0; i < 100; ++i) line.push_back({{Real(i), 0, 0}, {i + 0.5, 0, 0}});
-  CHECK(found(BoxTree(same), {{2, 2, 2}, {3, 3, 3}}).size() == 100);
-  CHECK(found(BoxTree(line), {{10.2, 0, 0}, {13, 0, 0}}) == std::vector<Index>{10, 11, 12, 13});
+  CHECK(found(Tree(same), {{2, 2, 2}, {3, 3, 3}}).size() == 100);
+  CHECK(found(Tree(line), {{10.2, 0, 0}, {13, 0, 0}}) == std::vector<Index>{10, 11, 12, 13});
 }
 
 TEST_CASE("a box that is no number any more overlaps everything") {
   const std::vector<Box> boxes(20, Box{{0, 0, 0}, {1, 1, 1}});
-  const BoxTree tree(boxes);
+  const Tree tree(boxes);
   const Real none = std::numeric_limits<Real>::quiet_NaN();
   CHECK(found(tree, {{none, none, none}, {none, none, none}}).size() == 20);
 }

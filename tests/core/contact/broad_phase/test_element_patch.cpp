@@ -39,7 +39,7 @@ TEST_CASE("a patch has the vertices, edges and faces of its element once") {
   const PairSearch lists = shapes.search();
   REQUIRE(lists.patches.size() == 4);
   const Index faces[] = {6, 5, 5, 4}, vertices[] = {8, 6, 5, 4}, edges[] = {12, 9, 8, 6};
-  for (const Patch& patch : lists.patches) {
+  for (const Patch& patch : on_host(lists.patches)) {
     CHECK(patch.face_count == faces[patch.block]);
     CHECK(patch.vertex_count == vertices[patch.block]);
     CHECK(patch.edge_count == edges[patch.block]);
@@ -65,9 +65,8 @@ TEST_CASE("boxes hold faces and patches on their whole way") {
   Shapes shapes;
   shapes.state.search.outer.lookahead_time = 0.5;
   PairSearch lists = shapes.search();
-  list_exposed_faces(shapes.model, shapes.state, lists.exposed);
-  list_patches(shapes.model, shapes.state, lists.exposed, lists.patches);
-  for (const Patch& patch : lists.patches)
+  list_patches(shapes.model, shapes.state, lists);
+  for (const Patch& patch : on_host(lists.patches))
     for (Index v = 0; v < patch.vertex_count; ++v)
       for (const Real time : {0.0, 0.25, 0.5}) {
         const Vec x = shapes.position(patch.vertex[v]) + time * shapes.velocity(patch.vertex[v]);
@@ -75,20 +74,22 @@ TEST_CASE("boxes hold faces and patches on their whole way") {
         point.include(x);
         CHECK(patch.box.overlaps(point));
       }
-  for (const ExposedFace& face : lists.exposed)
+  for (const ExposedFace& face : on_host(lists.exposed))
     CHECK(distance(face.displacement, Vec{0.05, 0, 0}) < 1e-16);
 }
 
 TEST_CASE("sides of exposed faces are sharp where the faces bend, and know what is across") {
   const Shapes shapes;
   const PairSearch lists = shapes.search();
-  for (std::size_t x = 0; x < lists.exposed.size(); ++x)
-    for (Index k = 0; k < lists.exposed[x].shape.count(); ++k) {
-      const ExposedSide& side = lists.sides[4 * x + k];
+  const auto exposed = on_host(lists.exposed);
+  const auto sides = on_host(lists.sides);
+  for (std::size_t x = 0; x < exposed.size(); ++x)
+    for (Index k = 0; k < exposed[x].shape.count(); ++k) {
+      const ExposedSide& side = sides[4 * x + k];
       CHECK(side.sharp);
       CHECK(!side.rises);  // all are convex
       REQUIRE(side.across >= 0);
-      CHECK(lists.exposed[side.across].block == lists.exposed[x].block);
+      CHECK(exposed[side.across].block == exposed[x].block);
       CHECK(relative_error(side.length, norm(side.along)) < 1e-15);
       CHECK(std::abs(dot(side.fall, side.along)) < 1e-14);
     }

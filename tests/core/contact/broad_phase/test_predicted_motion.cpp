@@ -15,7 +15,7 @@ struct Flying : Scene {
     start();
     state.dt = 1e-3;
   }
-  PredictedNode predicted(Index node) const { return PredictedNodes(state).at(node); }
+  PredictedNode predicted(Index node) const { return predicted_nodes(state).at(node); }
 };
 
 }  // namespace

@@ -2,6 +2,7 @@
 #include "core/contact/broad_phase/pair_search.hpp"
 #include "core/contact/broad_phase/separating_planes.hpp"
 #include "core/contact/geometry/views.hpp"
+#include "core/contact/pair_list/outer_faces.hpp"
 #include "core/contact/pair_list/rebuild.hpp"
 #include "tests/core/scene.hpp"
 
@@ -63,14 +64,13 @@ TEST_CASE("a vertex or an edge that is separated stays outside of the other bloc
   for (int k = 0; k < 200; ++k) {
     const TwoBlocks blocks(random);
     const PairSearch& lists = blocks.lists;
-    const Bonded bonded = live_overlaps(blocks.model, blocks.state);
-    const PairContext context{blocks.model, blocks.state, lists.exposed, lists.sides, bonded};
+    const PairContext context = on_host(pair_context(blocks.model, blocks.state, lists));
     REQUIRE(lists.patches.size() == 2);
-    const SeparatedParts separated(context, lists.patches[0], lists.patches[1]);
+    const SeparatedParts separated(context, context.patches[0], context.patches[1]);
     const Real horizon = blocks.state.search.outer.lookahead_time;
     for (Index of = 0; of < 2; ++of) {
-      const Patch& patch = lists.patches[of];
-      const Index other = lists.patches[1 - of].block;
+      const Patch& patch = context.patches[of];
+      const Index other = context.patches[1 - of].block;
       for (Real time = 0; time <= horizon; time += 0.05 * horizon) {
         for (Index v = 0; v < patch.vertex_count; ++v) {
           const Real out = blocks.outside_of(other, blocks.at(patch.vertex[v], time), time);
@@ -102,13 +102,12 @@ TEST_CASE("faces that a plane holds apart have no vertex inside the other block 
   for (int k = 0; k < 200; ++k) {
     const TwoBlocks blocks(random);
     const PairSearch& lists = blocks.lists;
-    const Bonded bonded = live_overlaps(blocks.model, blocks.state);
-    const PairContext context{blocks.model, blocks.state, lists.exposed, lists.sides, bonded};
-    const Patch &a = lists.patches[0], &b = lists.patches[1];
-    const FacePairMask mask(context, a, b, SeparatedParts(context, a, b));
+    const PairContext context = on_host(pair_context(blocks.model, blocks.state, lists));
+    PatchPair pair{.one = 0, .other = 1, .edge = {}, .row = {}, .vertex = {}, .listed = {}};
+    const bool meet = FindMeetingParts{context, false}(pair);
     const Real horizon = blocks.state.search.outer.lookahead_time;
-    (mask.any() ? listed : masked) += 1;
-    if (mask.any()) continue;
+    (meet ? listed : masked) += 1;
+    if (meet) continue;
     for (Real time = 0; time <= horizon; time += 0.05 * horizon)
       for (Index i = 0; i < blocks.model.node_count; ++i)
         CHECK(blocks.outside_of(1 - on_host(blocks.model.node_block)[i], blocks.at(i, time), time) >
@@ -130,19 +129,21 @@ TEST_CASE("the gap between moving faces changes by what GapChange says") {
 }
 
 TEST_CASE("listed pairs of faces are found with either as mother") {
-  Patch a{}, b{};
-  a.face_count = b.face_count = 2;
-  a.face[0] = 10, a.face[1] = 11, b.face[0] = 20, b.face[1] = 21;
-  ListedFacePairs listed;
-  listed.add(false, 0, 1);
-  listed.add(true, 1, 0);
-  PairBuffer found;
-  listed.list(a, b, found);
-  REQUIRE(found.face_pairs.size() == 2);
-  CHECK(found.face_pairs[0].mother == 10);
-  CHECK(found.face_pairs[0].face == 21);
-  CHECK(found.face_pairs[1].mother == 21);
-  CHECK(found.face_pairs[1].face == 10);
+  Patch patches[2]{};
+  for (Index k = 0; k < 2; ++k) {
+    patches[k].face_count = 2;
+    patches[k].face[0] = 10 + 10 * k, patches[k].face[1] = 11 + 10 * k;
+  }
+  PatchPair pair{.one = 0, .other = 1, .edge = {}, .row = {}, .vertex = {}, .listed = {}};
+  pair.listed[0] = ListedFacePairs::bit(0, 1);
+  pair.listed[1] = ListedFacePairs::bit(1, 0);
+  std::vector<FacePair> found;
+  ListFacePairs{patches, &pair}.visit(One{0}, [&](const FacePair& of) { found.push_back(of); });
+  REQUIRE(found.size() == 2);
+  CHECK(found[0].mother == 10);
+  CHECK(found[0].face == 21);
+  CHECK(found[1].mother == 21);
+  CHECK(found[1].face == 10);
 }
 
 }  // namespace cdem::test

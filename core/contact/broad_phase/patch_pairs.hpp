@@ -1,0 +1,46 @@
+// patch_pairs.hpp - kernels that list pairs of patches whose boxes overlap.
+#pragma once
+
+#include "core/contact/broad_phase/bounding_boxes.hpp"
+#include "core/contact/broad_phase/separating_planes.hpp"
+
+namespace cdem {
+
+/// Call act(pair) for the patches whose boxes overlap with that of a movable one: the later ones,
+/// and the ones that are not movable.
+struct ListPatchPairs {
+  const Patch* patches;
+  BoxTree tree;
+
+  template <class Act>
+  CDEM_HD void visit(One place, const Act& act) const {
+    const Patch& patch = patches[place.i];
+    if (!patch.movable) return;  // movable patches find it
+    tree.query(patch.box, [&](Index q) {
+      const Patch& other = patches[q];
+      if ((q > place.i || !other.movable) && patch.block != other.block)
+        act(PatchPair{
+            .one = place.i, .other = q, .edge = {}, .row = {}, .vertex = {}, .listed = {}});
+    });
+  }
+};
+
+/// Sort the pairs of every patch by the other one.
+struct SortByOther {
+  PatchPair* pairs;
+  Index count;
+
+  CDEM_HD void operator()(One first) const {
+    const Index one = pairs[first.i].one;
+    if (first.i > 0 && pairs[first.i - 1].one == one) return;  // the first of a patch does so
+    for (Index i = first.i + 1; i < count && pairs[i].one == one; ++i) {
+      const Index other = pairs[i].other;
+      Index place = i;
+      for (; place > first.i && pairs[place - 1].other > other; --place)
+        pairs[place].other = pairs[place - 1].other;
+      pairs[place].other = other;
+    }
+  }
+};
+
+}  // namespace cdem
