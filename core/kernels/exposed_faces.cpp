@@ -2,10 +2,12 @@
 // as CUDA.
 #include "core/base/primitive_loops.hpp"
 #include "core/contact/narrow_phase/edge_rows.hpp"
+#include "core/contact/narrow_phase/list_exposed.hpp"
 #include "core/contact/narrow_phase/renewed_faces.hpp"
 
 namespace cdem {
 
+template void for_each_item(Queue, Index, const ListExposed&);
 template bool any_item(Queue, Index, const OpensOrLeaves&);
 template void select_items(Queue, Index, const IsOpen&, Column<Index>&);
 template void for_each_item(Queue, Index, const FlagExposed&);

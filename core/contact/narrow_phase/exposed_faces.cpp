@@ -6,6 +6,7 @@
 #include "core/base/primitives.hpp"
 #include "core/contact/geometry/views.hpp"
 #include "core/contact/narrow_phase/edge_contacts.hpp"
+#include "core/contact/narrow_phase/list_exposed.hpp"
 #include "core/contact/narrow_phase/renewed_faces.hpp"
 #include "core/model/describe_contacts.hpp"
 #include "core/model/describe_state.hpp"
@@ -140,27 +141,19 @@ void renew_exposed(const Model& m, State& s, const Column<Flag>& open) {
 }
 
 void list_exposed(const Model& m, State& s) {
-  s.search.exposed.resize(s.search.exposed_face.size());
-  const auto exposed_face = on_host(s.search.exposed_face), across = on_host(s.search.across);
-  const auto place = on_host(s.search.face_exposed);
-  const auto rows = on_host(s.search.exposed);
-  const auto face_nodes = on_host(m.face_nodes), classes = on_host(m.face_interface_class);
-  const auto reach = on_host(m.face_reach), area = on_host(m.face_area);
-  const auto stiffness = on_host(m.face_stiffness);
-  for (std::size_t x = 0; x < rows.size(); ++x) {
-    const Index face = exposed_face[x];
-    ExposedRow& row = rows[x];
-    const Index* nodes = face_nodes.data() + 4 * std::size_t(face);
-    for (Index k = 0; k < 4; ++k) {
-      const Index beyond = across[4 * x + k];
-      row.corner[k] = nodes[k] < 0 ? nodes[2] : nodes[k];
-      row.beside[k] = beyond < 0 ? -1 : place[beyond];
-    }
-    row.reach = reach[face];
-    row.area = area[face] / row.count();
-    row.stiffness = stiffness[face];
-    row.interface_class = classes[face];
-  }
+  SearchState& search = s.search;
+  const std::size_t count = search.exposed_face.size();
+  search.exposed.renew(count);
+  for_each_item({}, Index(count),
+                ListExposed{.exposed_face = search.exposed_face.data(),
+                            .face_exposed = search.face_exposed.data(),
+                            .across = search.across.data(),
+                            .face_nodes = m.face_nodes.data(),
+                            .face_interface_class = m.face_interface_class.data(),
+                            .face_reach = m.face_reach.data(),
+                            .face_area = m.face_area.data(),
+                            .face_stiffness = m.face_stiffness.data(),
+                            .rows = search.exposed.data()});
 }
 
 void update_face_geometry(const Model& m, State& s, Queue q) {
