@@ -43,12 +43,12 @@ void list_pairs_of_exposed(const Model& m, State& s, const StepPlan& plan, bool 
   join_surfaces(m, s, released);
   list_exposed(m, s);
   list_candidates(m, s);
-  sum_stiffness(m, s);
   if (released) {
     list_corners(m, s);
     list_lumped(m, s);
   }
   list_contact_corners(m, s);
+  sum_stiffness(m, s);
   if (!plan.everything_awake) list_awake_nodes(m, s);
   s.built_step = s.step;
   ++s.rebuilds;
