@@ -35,6 +35,9 @@ void describe_model_rows(const Model& m, const State& s, Visit&& visit) {
     visit(RowKind{tiles_of(kind.name), "tiles of elements"}, total(e.tiles.block_first) - 1);
     visit(RowKind{tile_nodes_of(kind.name), "nodes of tiles"}, total(e.tiles.node));
   });
+  visit(RowKind{"element_corners", "corners of the elements of all sets, one set after the other"},
+        element_corner_count(m, s));
+  visit(RowKind{"node_elements", "corners of elements, by node"}, end_of(s.nodes.element_first));
   visit(RowKind{"tile_rows", "forces of tiles on nodes"}, end_of(s.nodes.tile_first));
   visit(RowKind{"node_tets", "tets of a node, where their dilatation is averaged"},
         total(s.nodal.tet));
