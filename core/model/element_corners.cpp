@@ -21,9 +21,7 @@ ElementCorners element_corners(const Model& m, const State& s) {
 
 void list_element_corners(const Model& m, State& s) {
   const ElementCorners all = element_corners(m, s);
-  Index elements = 0;
-  for (const ElementCorners::Set& set : all.sets) elements += set.count;
-  list_rows({}, elements, element_corner_count(m, s), m.node_count, CornersByNode{all},
+  list_rows({}, element_count(m, s), element_corner_count(m, s), m.node_count, CornersByNode{all},
             s.nodes.element_first, s.nodes.element_corner);
 }
 
