@@ -15,7 +15,10 @@ void swap_with_old(EdgeState& e) {
 }
 
 EdgeRowsBefore rows_of(const EdgeState& e) {
-  return {e.first.data(), e.contact.data(), e.state.data(), e.reaction.data()};
+  return {.first = e.first.data(),
+          .contact = e.contact.data(),
+          .state = e.state.data(),
+          .reaction = e.reaction.data()};
 }
 
 }  // namespace
@@ -68,8 +71,10 @@ void move_edges(State& s, const Column<Index>& before, const Column<Index>& to) 
   Column<Real> reaction_before;
   reaction_before.swap(e.reaction);
   const Index count = Index(before.size());
-  const KeptEdges kept{.rows = {e.old_first.data(), e.old_contact.data(), e.old_state.data(),
-                                reaction_before.data()},
+  const KeptEdges kept{.rows = {.first = e.old_first.data(),
+                                .contact = e.old_contact.data(),
+                                .state = e.old_state.data(),
+                                .reaction = reaction_before.data()},
                        .before = before.data(),
                        .to = to.data()};
   e.first.renew(std::size_t(count) + 1);
