@@ -81,6 +81,36 @@ CDEM_HD inline void raise_bits(std::uint64_t& word, std::uint64_t bits, bool alo
   __atomic_fetch_or(&word, bits, __ATOMIC_RELAXED);
 #endif
 }
+/// Raise a number that is not negative to another one, where several threads may at once.
+CDEM_HD inline void raise_to(Real& most, Real value, bool alone) {
+  if (alone) {
+    if (value > most) most = value;
+    return;
+  }
+#if defined(__CUDA_ARCH__)  // such numbers are in the order of their bits
+  atomicMax(reinterpret_cast<long long*>(&most), __double_as_longlong(value));
+#else
+  Real now = 0;  // a guess: the failed exchange tells
+  while (now < value && !__atomic_compare_exchange(&most, &now, &value, true, __ATOMIC_RELAXED,
+                                                   __ATOMIC_RELAXED)) {
+  }
+#endif
+}
+/// The same down.
+CDEM_HD inline void lower_to(Real& least, Real value, bool alone) {
+  if (alone) {
+    if (value < least) least = value;
+    return;
+  }
+#if defined(__CUDA_ARCH__)
+  atomicMin(reinterpret_cast<long long*>(&least), __double_as_longlong(value));
+#else
+  Real now = infinity;
+  while (now > value && !__atomic_compare_exchange(&least, &now, &value, true, __ATOMIC_RELAXED,
+                                                   __ATOMIC_RELAXED)) {
+  }
+#endif
+}
 /// Set a flag that several threads may set at once.
 CDEM_HD inline void set(Flag& flag, Flag value = 1) {
 #if defined(__CUDA_ARCH__)

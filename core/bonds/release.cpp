@@ -2,6 +2,8 @@
 #include "core/bonds/release.hpp"
 
 #include <algorithm>
+#include <array>
+#include <utility>
 #include <vector>
 
 #include "core/base/primitives.hpp"
@@ -34,10 +36,10 @@ bool has_moved_far(const Model& m, const PairSet& p, const PairState& s) {
 
 /// The pairs for which a kernel holds, ascending.
 template <class Kernel>
-std::vector<Index> pairs_where(const PairSet& p, const Kernel& kernel) {
+Column<Index> pairs_where(const PairSet& p, const Kernel& kernel) {
   Column<Index> list;
   select_items({}, p.count, kernel, list);
-  return fetch(list);
+  return list;
 }
 
 /// A pair that holds by some of its points and is this part of its length apart at another is a
@@ -60,15 +62,15 @@ struct BrokenPoint {
   Real history[InterfaceLaws::most_state + 1];
 };
 
-/// If a pair has opened as a hinge, expose its faces. Its broken points carry nothing any more;
-/// their small energy is lost to friction.
-void open_if_hinge(const Model& m, State& s, const PairSet& p, PairState& ps, Index i,
-                   const Frame<Real>& frame, std::vector<BrokenPoint>& broken) {
+/// If a pair has opened as a hinge, list it. Its broken points carry nothing any more; their small
+/// energy is lost to friction.
+void open_if_hinge(const Model& m, const PairSet& p, PairState& ps, Index i,
+                   const Frame<Real>& frame, std::vector<BrokenPoint>& broken,
+                   std::vector<Index>& hinges) {
   Real widest = 0;
   for (const BrokenPoint& point : broken) widest = std::max(widest, norm(point.jump));
   if (!(widest > hinge_part * pair_length(m, p, i))) return;
   const PairColumns pairs = on_host(pair_columns(m, p, ps));
-  const auto faces = on_host(p.faces);
   const auto slip1 = on_host(ps.slip1), slip2 = on_host(ps.slip2);
   const auto friction = on_host(ps.friction), stored = on_host(ps.stored);
   for (BrokenPoint& point : broken) {
@@ -80,14 +82,15 @@ void open_if_hinge(const Model& m, State& s, const PairSet& p, PairState& ps, In
     stored[i] -= held;
   }
   on_host(ps.status)[i] = Flag(PairStatus::hinge);
-  expose(s, faces[2 * i]);
-  expose(s, faces[2 * i + 1]);
-  give_history(m, s, p, ps, i);
+  hinges.push_back(i);
 }
 
+/// Returns the pairs that have opened as hinges.
 template <Index count>
-void open_hinges(const Model& m, State& s, const PairSet& p, PairState& ps, Real indentation) {
-  const std::vector<Index> some = pairs_where(p, holds_in_part(p, ps));
+std::vector<Index> open_hinges(const Model& m, State& s, const PairSet& p, PairState& ps,
+                               Real indentation) {
+  std::vector<Index> hinges;
+  const std::vector<Index> some = fetch(pairs_where(p, holds_in_part(p, ps)));
   const auto bonds = on_host(ConformingBonds<count>{.nodes = {s.nodes.motion.data()},
                                                     .pair_nodes = {p.nodes.data(), p.stride},
                                                     .pairs = pair_columns(m, p, ps),
@@ -107,14 +110,16 @@ void open_hinges(const Model& m, State& s, const PairSet& p, PairState& ps, Real
       broken.push_back({place(k), jump[k], bonds.spring(One{i}), {}});
       bonds.pairs.template load_history<InterfaceLaws>(One{i}, k, count, broken.back().history);
     }
-    open_if_hinge(m, s, p, ps, i, frame, broken);
+    open_if_hinge(m, p, ps, i, frame, broken, hinges);
   }
+  return hinges;
 }
 
-void open_overlap_hinges(const Model& m, State& s) {
+std::vector<Index> open_overlap_hinges(const Model& m, State& s) {
+  std::vector<Index> hinges;
   const PairSet& p = m.overlaps;
   PairState& ps = s.overlaps;
-  const std::vector<Index> some = pairs_where(p, holds_in_part(p, ps));
+  const std::vector<Index> some = fetch(pairs_where(p, holds_in_part(p, ps)));
   const OverlapBonds bonds = on_host(overlap_bonds(m, s));
   const auto point_first = on_host(p.point_first), faces = on_host(p.faces);
   const auto point_area = on_host(p.point_area);
@@ -133,21 +138,45 @@ void open_overlap_hinges(const Model& m, State& s) {
                         {}});
       bonds.pairs.load_history<InterfaceLaws>(One{c}, 0, 1, broken.back().history);
     }
-    open_if_hinge(m, s, p, ps, i, frame, broken);
+    open_if_hinge(m, p, ps, i, frame, broken, hinges);
   }
+  return hinges;
 }
 
-/// Returns whether any was released.
-bool release_pairs(const Model& m, State& s, const PairSet& p, PairState& ps) {
-  const std::vector<Index> released =
-      pairs_where(p, has_moved_by(m, p, ps, release_part * m.rules.indentation));
-  const auto faces = on_host(p.faces);
+/// Pairs of one set whose faces can be touched from now on.
+struct LetGo {
+  const PairSet& set;
+  PairState& state;
+  std::vector<Index> hinges;
+  Column<Index> released;
+};
+
+/// The released pairs of a set with these new hinges.
+LetGo let_go(const Model& m, const PairSet& p, PairState& ps, std::vector<Index> hinges) {
+  const HasMovedFar has_moved = has_moved_by(m, p, ps, release_part * m.rules.indentation);
+  return {
+      .set = p, .state = ps, .hinges = std::move(hinges), .released = pairs_where(p, has_moved)};
+}
+
+void expose_faces(const Model& m, State& s, const std::array<LetGo, 3>& sets) {
+  Column<Flag> open = open_faces(s);
+  for (const LetGo& one : sets) {
+    Column<Index> hinges;
+    hinges.assign(one.hinges);
+    open_faces_of(one.set, hinges, open);
+    open_faces_of(one.set, one.released, open);
+  }
+  renew_exposed(m, s, open);
+}
+
+/// Contacts take over what released pairs of a set carry.
+void hand_over(const Model& m, State& s, const LetGo& pairs) {
+  const PairSet& p = pairs.set;
+  PairState& ps = pairs.state;
   const auto status = on_host(ps.status);
   const auto stored = on_host(ps.stored), friction = on_host(ps.friction);
   const auto jump = on_host(ps.jump), jump_at_break = on_host(ps.jump_at_break);
-  for (const Index i : released) {
-    expose(s, faces[2 * i]);
-    expose(s, faces[2 * i + 1]);
+  for (const Index i : fetch(pairs.released)) {
     give_history(m, s, p, ps, i);
     const bool hinge = PairStatus(status[i]) == PairStatus::hinge;
     if (p.point_first.size() > 0 && !hinge) {
@@ -162,7 +191,6 @@ bool release_pairs(const Model& m, State& s, const PairSet& p, PairState& ps) {
     jump[i] = 0;
     jump_at_break[i] = -1;
   }
-  return !released.empty();
 }
 
 }  // namespace
@@ -173,13 +201,21 @@ bool release_is_due(const Model& m, const State& s) {
 }
 
 bool release_bonds(const Model& m, State& s) {
-  open_hinges<3>(m, s, m.triangles, s.triangles, m.bond_indentation_triangle);
-  open_hinges<4>(m, s, m.quads, s.quads, m.bond_indentation_quad);
-  open_overlap_hinges(m, s);
-  const bool triangles = release_pairs(m, s, m.triangles, s.triangles);
-  const bool quads = release_pairs(m, s, m.quads, s.quads);
-  const bool overlaps = release_pairs(m, s, m.overlaps, s.overlaps);
-  return triangles || quads || overlaps;
+  const std::array<LetGo, 3> sets{
+      let_go(m, m.triangles, s.triangles,
+             open_hinges<3>(m, s, m.triangles, s.triangles, m.bond_indentation_triangle)),
+      let_go(m, m.quads, s.quads, open_hinges<4>(m, s, m.quads, s.quads, m.bond_indentation_quad)),
+      let_go(m, m.overlaps, s.overlaps, open_overlap_hinges(m, s))};
+  bool hinges = false, released = false;
+  for (const LetGo& one : sets) {
+    hinges = hinges || !one.hinges.empty();
+    released = released || one.released.size() > 0;
+  }
+  if (hinges || released) expose_faces(m, s, sets);
+  for (const LetGo& one : sets)
+    for (const Index i : one.hinges) give_history(m, s, one.set, one.state, i);
+  for (const LetGo& one : sets) hand_over(m, s, one);
+  return released;
 }
 
 }  // namespace cdem

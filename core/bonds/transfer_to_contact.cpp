@@ -440,7 +440,11 @@ void await_contacts(const Model& m, State& s) {
     await_edges(m, s, x, y, edges);
     await_edges(m, s, y, x, edges);
   }
-  add_edges(s, edges, awaited_state(m));
+  Column<Index> contacts;
+  contacts.renew(4 * edges.size());
+  const auto rows = on_host(contacts);
+  for (std::size_t c = 0; c < edges.size(); ++c) edges[c].store(rows.data(), c);
+  add_edges(s, contacts, awaited_state(m));
 }
 
 void transfer_released_bonds(const Model& m, State& s, Queue q) {

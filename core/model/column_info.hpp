@@ -44,6 +44,7 @@ struct ColumnInfo {
   bool opposite = false;  // index ~i means the negative of row i
   bool optional = false;  // empty where nothing asks for it
   Changes changes = Changes::never;
+  Index initial = 0;  // number of a row that comes later, of an exposed face
 };
 
 /// A kind of rows.

@@ -18,7 +18,8 @@ void describe_history(const std::string& set, HistoryColumns& history, Stored&& 
   stored({.name = set + ".history_law",
           .meaning = "number of the law whose history it is, or -1",
           .rows = "slots",
-          .numbers = history.width > 0 ? 1 : 0},
+          .numbers = history.width > 0 ? 1 : 0,
+          .initial = -1},
          history.law);
 }
 
@@ -28,12 +29,14 @@ void describe_springs(SpringState& c, Stored&& stored) {
   stored({.name = "spring.target",
           .meaning = "exposed face in contact, or -1",
           .rows = "slots",
-          .refers_to = {"exposed"}},
+          .refers_to = {"exposed"},
+          .initial = -1},
          c.target);
   stored({.name = "spring.target_before",
           .meaning = "the same, one step ago",
           .rows = "slots",
-          .refers_to = {"exposed"}},
+          .refers_to = {"exposed"},
+          .initial = -1},
          c.target_before);
   stored({.name = "spring.state",
           .unit = "N, m, N, m, J, J, m",

@@ -14,6 +14,7 @@ void describe_nodes(Model& m, Visit&& given) {
   given({.name = "node.block",
          .meaning = "number of its block",
          .rows = "nodes",
+         .refers_to = {"blocks"},
          .changes = Changes::with_stage},
         m.node_block);
   given({.name = "node.place",
@@ -267,12 +268,18 @@ void describe_faces(Model& m, Visit&& given) {
         m.face_edges);
   given({.name = "face.interface_class",
          .meaning = "class of faces that have the same interfaces",
-         .rows = "faces"},
+         .rows = "faces",
+         .refers_to = {"interface_classes"}},
         m.face_interface_class);
-  given({.name = "face.block", .meaning = "number of its block", .rows = "faces"}, m.face_block);
+  given({.name = "face.block",
+         .meaning = "number of its block",
+         .rows = "faces",
+         .refers_to = {"blocks"}},
+        m.face_block);
   given({.name = "face.element",
-         .meaning = "element behind it, counted through all sets of elements",
-         .rows = "faces"},
+         .meaning = "element behind it",
+         .rows = "faces",
+         .refers_to = {"elements"}},
         m.face_element);
 }
 

@@ -180,6 +180,19 @@ void describe_node_sums(State& s, Rebuilt&& rebuilt) {
            .layout = Layout::starts,
            .refers_to = {"tile_rows"}},
           n.tile_first);
+  rebuilt("list_element_corners",
+          {.name = "node.element_first",
+           .meaning = "corners of elements at a node",
+           .rows = "nodes",
+           .layout = Layout::starts,
+           .refers_to = {"node_elements"}},
+          n.element_first);
+  rebuilt("list_element_corners",
+          {.name = "node.element_corner",
+           .meaning = "such a corner",
+           .rows = "node_elements",
+           .refers_to = {"element_corners"}},
+          n.element_corner);
   rebuilt("list_corners",
           {.name = "node.corner_first",
            .meaning = "corner rows of live pairs and bolts at a node",

@@ -1,6 +1,8 @@
 // describe_rows.hpp - the kinds of rows that arrays have, and how many there are of each.
 #pragma once
 
+#include <algorithm>
+
 #include "core/base/parallel.hpp"
 #include "core/model/force_sets.hpp"
 #include "core/model/row_kinds.hpp"
@@ -11,6 +13,12 @@ namespace cdem {
 inline Index end_of(const Column<Index>& starts) {
   const auto items = on_host(starts);
   return items.size() > 0 ? items[items.size() - 1] : 0;
+}
+
+/// How many blocks there are, by their numbers at the nodes.
+inline Index block_count(const Model& m) {
+  const auto blocks = on_host(m.node_block);
+  return blocks.size() > 0 ? 1 + *std::max_element(blocks.begin(), blocks.end()) : 0;
 }
 
 /// Visit the rows that the model has: part of `describe_rows`.
@@ -35,6 +43,11 @@ void describe_model_rows(const Model& m, const State& s, Visit&& visit) {
     visit(RowKind{tiles_of(kind.name), "tiles of elements"}, total(e.tiles.block_first) - 1);
     visit(RowKind{tile_nodes_of(kind.name), "nodes of tiles"}, total(e.tiles.node));
   });
+  visit(RowKind{"elements", "elements of all sets, one set after the other"}, element_count(m, s));
+  visit(RowKind{"blocks", "discrete bodies"}, block_count(m));
+  visit(RowKind{"element_corners", "corners of the elements of all sets, one set after the other"},
+        element_corner_count(m, s));
+  visit(RowKind{"node_elements", "corners of elements, by node"}, end_of(s.nodes.element_first));
   visit(RowKind{"tile_rows", "forces of tiles on nodes"}, end_of(s.nodes.tile_first));
   visit(RowKind{"node_tets", "tets of a node, where their dilatation is averaged"},
         total(s.nodal.tet));
@@ -55,6 +68,8 @@ void describe_model_rows(const Model& m, const State& s, Visit&& visit) {
         end_of(m.edge_star_first));
   visit(RowKind{"flush_faces", "faces of other blocks that began flush with a face"},
         end_of(m.flush_first));
+  visit(RowKind{"interface_classes", "classes of faces that have the same interfaces"},
+        m.class_count);
   visit(RowKind{"class_pairs", "pairs of interface classes of faces"},
         m.class_count * m.class_count);
   visit(RowKind{"interfaces", "interfaces between groups"}, total(m.interfaces));

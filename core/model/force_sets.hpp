@@ -120,6 +120,14 @@ inline void clear_corner_rows(State& s, const PairSet& p, Index pair) {
   });
 }
 
+/// Elements of all sets together.
+inline Index element_count(const Model& m, const State& s) {
+  Index count = 0;
+  for_each_element_set(m, s,
+                       [&](auto, const ElementSet& e, const ElementState&) { count += e.count; });
+  return count;
+}
+
 /// Corners of all elements together.
 inline Index element_corner_count(const Model& m, const State& s) {
   Index count = 0;

@@ -6,6 +6,7 @@
 #include "core/interfaces/laws.hpp"
 #include "core/materials/laws.hpp"
 #include "core/model/applied_lists.hpp"
+#include "core/model/element_corners.hpp"
 #include "core/model/force_sets.hpp"
 #include "core/model/tiles.hpp"
 
@@ -111,6 +112,7 @@ void init_state(const Model& m, State& s, const Real* position) {
   for_each_set(m, s, [&](auto, const auto& set, auto& state) { size(m, set, state); });
   make_room_for_rises(m, s);
   list_tiles(m, s);
+  list_element_corners(m, s);
   list_applied(m, s);
   Modules::for_each_of<Port::applied>([&]<class Module>() {
     if constexpr (requires { Module::start(m, s); })

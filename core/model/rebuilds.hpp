@@ -23,6 +23,7 @@ struct Rebuild {
 /// for a frame, a history or the begin of a stage cannot be made again: a checkpoint keeps them.
 inline constexpr Rebuild rebuilds[] = {
     {"list_tiles", Made::at_start},
+    {"list_element_corners", Made::at_start},
     {"list_applied", Made::at_start},
     {"list_nodal_means", Made::after_resume},
     {"find_loads_and_supports", Made::after_resume},

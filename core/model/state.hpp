@@ -30,11 +30,12 @@ struct NodeState {
   Column<Real> applied;             // rows of 4, sum of several modules; empty where one is there
   Column<Flag> has_applied;  // 1: modules apply forces to it, see nodes/applied.hpp; or empty
   Column<Real> radiated, radiated_sample;  // work of dashpots, see SampleDashpots; or empty
-  Column<Flag> fused;        // 1: of a fused block, see nodes/fused_block.hpp; empty: there is none
-  Column<Index> general;     // awake blocks of nodes, without completely fused ones
-  bool damped = false;       // in the last step, else damping_force does not count
-  Column<Index> tile_first;  // rows of tiles that a node sums, see ElementTiles
-  Column<Index> corner_first, corner;  // rows of live pairs and modules that it sums then
+  Column<Flag> fused;     // 1: of a fused block, see nodes/fused_block.hpp; empty: there is none
+  Column<Index> general;  // awake blocks of nodes, without completely fused ones
+  bool damped = false;    // in the last step, else damping_force does not count
+  Column<Index> element_first, element_corner;  // see list_element_corners
+  Column<Index> tile_first;                     // rows of tiles that a node sums, see ElementTiles
+  Column<Index> corner_first, corner;           // rows of live pairs and modules that it sums then
 };
 
 /// Dashpots between nodes and the ground, see nodes/ground.hpp; empty where there are none.

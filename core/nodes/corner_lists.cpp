@@ -1,32 +1,45 @@
 // corner_lists.cpp - see corner_lists.hpp.
 #include "core/nodes/corner_lists.hpp"
 
-#include <algorithm>
-#include <vector>
-
 #include "core/base/primitives.hpp"
 #include "core/model/force_sets.hpp"
 #include "core/nodes/contact_corners.hpp"
+#include "core/nodes/live_corners.hpp"
 
 namespace cdem {
 
+namespace {
+
+void mark_live_rows(const PairSet& p, const PairState& ps, Column<Flag>& live) {
+  for_each_item({}, p.count,
+                MarkLiveRows{.status = ps.status.data(),
+                             .first = p.corner_first,
+                             .corners = p.corners,
+                             .live = live.data()});
+}
+template <ModuleData Given>
+void mark_live_rows(const Given& given, const auto& state, Column<Flag>& live) {
+  if (given.count == 0) return;
+  const auto is_active = activity(state);
+  const auto for_each_corner_row = corner_rows_of(given);
+  const auto flags = on_host(live);
+  for (Index i = 0; i < given.count; ++i)
+    for_each_corner_row(i, [&](Index row) { flags[row] = is_active(i); });
+}
+
+}  // namespace
+
 void list_corners(const Model& m, State& s) {
-  std::vector<Flag> released(m.corner_rows);
-  for_each_row_set(m, s, [&](auto, const auto& set, const auto& state) {
-    const auto is_active = activity(state);
-    const auto for_each_corner_row = corner_rows_of(set);
-    for (Index i = 0; i < set.count; ++i)
-      if (!is_active(i)) for_each_corner_row(i, [&](Index row) { released[row] = 1; });
-  });
-  const auto all_first = on_host(m.corner_first), all = on_host(m.corner);
-  std::vector<Index> first(m.node_count + 1), corner;
-  for (Index i = 0; i < m.node_count; ++i) {
-    for (Index c = all_first[i]; c < all_first[i + 1]; ++c)
-      if (!released[all[c] < 0 ? ~all[c] : all[c]]) corner.push_back(all[c]);
-    first[i + 1] = Index(corner.size());
-  }
-  s.nodes.corner_first.assign(first);
-  s.nodes.corner.assign(corner);
+  Column<Flag> live;
+  live.renew(m.corner_rows);
+  for_each_row_set(
+      m, s, [&](auto, const auto& set, const auto& state) { mark_live_rows(set, state, live); });
+  const LiveCorners corners{m.corner_first.data(), m.corner.data(), live.data()};
+  Column<Index>& first = s.nodes.corner_first;
+  first.renew(std::size_t(m.node_count) + 1);
+  for_each_item({}, m.node_count, CountLiveCorners{corners, first.data() + 1});
+  s.nodes.corner.renew(scan({}, m.node_count, first.data() + 1, first.data()));
+  for_each_item({}, m.node_count, PutLiveCorners{corners, first.data(), s.nodes.corner.data()});
 }
 
 void list_contact_corners(const Model& m, State& s) {

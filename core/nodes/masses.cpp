@@ -1,12 +1,9 @@
 // masses.cpp - see masses.hpp.
 #include "core/nodes/masses.hpp"
 
-#include <algorithm>
-#include <vector>
-
-#include "core/base/parallel.hpp"
 #include "core/base/primitives.hpp"
 #include "core/model/force_sets.hpp"
+#include "core/nodes/lumped_blocks.hpp"
 #include "core/nodes/node_energy.hpp"
 #include "core/nodes/relaxing_node.hpp"
 #include "core/nodes/views.hpp"
@@ -33,9 +30,10 @@ template <class Change>
 void book_change(const Model& m, State& s, Change&& change) {
   const Real before = energy_of_motion(m, s);
   const auto count_in_sample = [&](Real sign) {
-    const KineticEnergy energy = on_host(kinetic_energies(m, s));
-    const auto sample = on_host(s.nodes.sample);
-    for (Index i = 0; i < m.node_count; ++i) sample[4 * std::size_t(i)] += sign * energy(One{i});
+    for_each_item(
+        {}, m.node_count,
+        CountInSample{
+            .energy = kinetic_energies(m, s), .sign = sign, .sample = s.nodes.sample.data()});
   };
   count_in_sample(-1);
   change();
@@ -53,26 +51,42 @@ void change_mass(Model& m, State& s, bool lumped) {
   });
 }
 
+namespace {
+
+/// Flags [node] of the nodes of blocks with dashpots to the ground, or with bonds.
+Column<Flag> lumped_nodes(const Model& m, const State& s) {
+  Column<Flag> whole, lumped;  // the first by block's first node
+  whole.renew(m.node_count);
+  lumped.renew(m.node_count);
+  set_all({}, m.node_count, whole.data(), Flag(0));
+  for_each_item({}, Index(s.ground.node.size()),
+                MarkBlocksOfNodes{s.ground.node.data(), m.block_first.data(), whole.data()});
+  for_each_pair_set(m, s, [&](auto, const PairSet& p, const PairState& ps) {
+    if (m.lumped_while_bonded)
+      for_each_item({}, p.count,
+                    MarkBondedBlocks{.status = ps.status.data(),
+                                     .faces = p.faces.data(),
+                                     .face_nodes = m.face_nodes.data(),
+                                     .block_first = m.block_first.data(),
+                                     .whole = whole.data()});
+  });
+  for_each_item({}, m.node_count, SpreadInBlock{whole.data(), m.block_first.data(), lumped.data()});
+  return lumped;
+}
+
+}  // namespace
+
 void list_lumped(const Model& m, State& s) {
+  Column<Flag>& lumped = s.nodes.lumped;
   if (!m.lumped_while_bonded && s.ground.node.size() == 0) {
-    if (s.nodes.lumped.size() > 0) book_change(m, s, [&] { s.nodes.lumped.resize(0); });
+    if (lumped.size() > 0) book_change(m, s, [&] { lumped.resize(0); });
     return;
   }
-  std::vector<Flag> whole(m.node_count), lumped(m.node_count);  // the first by block's first node
-  const auto block_first = on_host(m.block_first);
-  for (const Index node : on_host(s.ground.node)) whole[block_first[node]] = 1;
-  for_each_pair_set(m, s, [&](auto, const PairSet& p, const PairState& ps) {
-    const auto is_active = activity(ps);
-    const auto for_each_node = nodes_of(m, p);
-    for (Index i = 0; i < p.count && m.lumped_while_bonded; ++i)
-      if (is_active(i)) for_each_node(i, [&](Index node) { whole[block_first[node]] = 1; });
-  });
-  for (Index i = 0; i < m.node_count; ++i) lumped[i] = whole[block_first[i]];
-  const auto change = [&] { s.nodes.lumped.assign(lumped); };
-  if (s.nodes.lumped.size() == 0)  // of a new or a restored state: nothing changes
-    change();
-  else if (!std::equal(lumped.begin(), lumped.end(), on_host(s.nodes.lumped).begin()))
-    book_change(m, s, change);
+  Column<Flag> now = lumped_nodes(m, s);
+  if (lumped.size() == 0)  // of a new or a restored state: nothing changes
+    lumped.swap(now);
+  else if (any_item({}, m.node_count, FlagsDiffer{now.data(), lumped.data()}))
+    book_change(m, s, [&] { lumped.swap(now); });
 }
 
 void slow_heavier_nodes(const Model& m, State& s) {

@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <vector>
 
+#include "core/base/primitives.hpp"
 #include "core/model/block_lists.hpp"
 #include "core/model/force_sets.hpp"
+#include "core/nodes/awake_nodes.hpp"
 #include "core/nodes/fused_blocks.hpp"
 #include "core/nodes/views.hpp"
 
@@ -78,23 +80,23 @@ void find_awake(const Model& m, State& s) {
 }
 
 void list_awake_nodes(const Model& m, State& s) {
+  const Index blocks = m.node_count / block_size + (m.node_count % block_size > 0);
+  Column<Flag> wakes;
+  wakes.renew(m.node_count);
   s.nodes.listed.resize(m.node_count);
-  const auto listed = on_host(s.nodes.listed), sleeps = on_host(s.nodes.sleeps);
-  const auto first = on_host(s.search.contact_first);
-  std::vector<Flag> wakes(m.node_count);
-  for (Index i = 0; i < m.node_count; ++i) {
-    const bool was = listed[i], is = first[i] < first[i + 1];
-    listed[i] = is;
-    wakes[i] = !sleeps[i] || is || was;
-  }
-  const auto row_first = on_host(m.mass_row_first);
-  const auto block_first = on_host(m.block_first), block_count = on_host(m.block_count);
-  for (Index i = 0; i < m.node_count; ++i) {  // nodes that share a mass matrix move together
-    if (m.lumped || row_first[i] < 0 || block_first[i] != i) continue;
-    const auto begin = wakes.begin() + i, end = begin + block_count[i];
-    if (std::any_of(begin, end, [](Flag f) { return f; })) std::fill(begin, end, Flag(1));
-  }
-  list_blocks(m.node_count, s.nodes.awake, [&](Index i) { return wakes[i]; });
+  for_each_item({}, m.node_count,
+                FindWakingNodes{.sleeps = s.nodes.sleeps.data(),
+                                .contact_first = s.search.contact_first.data(),
+                                .listed = s.nodes.listed.data(),
+                                .wakes = wakes.data()});
+  select_items({}, blocks,
+               BlockIsAwake{.count = m.node_count,
+                            .wakes = wakes.data(),
+                            .lumped = m.lumped,
+                            .mass_row_first = m.mass_row_first.data(),
+                            .block_first = m.block_first.data(),
+                            .block_count = m.block_count.data()},
+               s.nodes.awake);
   find_fused_blocks(m, s);
 }
 

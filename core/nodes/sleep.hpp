@@ -1,4 +1,4 @@
-// sleep.hpp - fixed parts on which nothing acts are not computed. Host code.
+// sleep.hpp - fixed parts on which nothing acts are not computed.
 #pragma once
 
 #include "core/model/model.hpp"

@@ -92,16 +92,13 @@ void bring_in(Model& m, State& s, const Flag* comes, const Flag* bonded) {
   Modules::for_each_of<Port::rows>([&]<class Module>() {
     Module::bring_in(given_of<Module>(m), state_of<Module>(s), out.data());
   });
-  Covered faces = covered_faces(m, s, comes);
-  std::vector<Flag> hidden(m.face_count);
+  const Covered faces = covered_faces(m, s, comes);
+  Column<Flag> open = open_faces(s);
+  const auto opens = on_host(open);
   const auto face_nodes = on_host(m.face_nodes);
-  for (Index f = 0; f < m.face_count; ++f) {
-    if (!faces.touched[f] || out[face_nodes[4 * f]]) continue;
-    if (faces.bare[f]) expose(s, f);
-    hidden[f] = !faces.bare[f];
-  }
-  hide_faces(s, hidden);
-  sort_exposed(s);
+  for (Index f = 0; f < m.face_count; ++f)
+    if (faces.touched[f] && !out[face_nodes[4 * f]]) opens[f] = faces.bare[f];
+  change_exposed(m, s, open);
   s.taken_out += before - stored_energy(m, s);
   list_pairs_of_exposed(m, s, {.everything_awake = true}, true);
   Modules::for_each_of<Port::applied>([&]<class Module>() {

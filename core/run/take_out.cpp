@@ -79,7 +79,8 @@ void stop_nodes(NodeState& n, const std::vector<Index>& which) {
   for (const std::size_t i : which) relax[8 * i + 3] = 1;
 }
 
-void unload(State&, const ElementSet& e, ElementState& es, const std::vector<Index>& which) {
+void unload(State&, const ElementSet& e, ElementState& es, const std::vector<Index>& which,
+            OnHost<Flag>) {
   const auto energy = on_host(es.energy), point_stress = on_host(es.point_stress);
   for (const Index i : which) {
     energy[i] = 0;
@@ -88,13 +89,14 @@ void unload(State&, const ElementSet& e, ElementState& es, const std::vector<Ind
   }
 }
 
-/// The faces of a pair become exposed; removed ones are hidden afterwards.
-void unload(State& s, const PairSet& p, PairState& ps, const std::vector<Index>& which) {
+/// The faces of a pair become exposed; removed ones leave at the end.
+void unload(State& s, const PairSet& p, PairState& ps, const std::vector<Index>& which,
+            OnHost<Flag> open) {
   const auto is_active = activity(ps);
   const auto faces = on_host(p.faces);
   for (const Index i : which)
     for (const Index side : {0, 1})
-      if (is_active(i)) expose(s, faces[2 * i + side]);
+      if (is_active(i)) open[faces[2 * i + side]] = 1;
   const auto status = on_host(ps.status);
   const auto stored = on_host(ps.stored), jump = on_host(ps.jump);
   const auto jump_at_break = on_host(ps.jump_at_break);
@@ -108,7 +110,8 @@ void unload(State& s, const PairSet& p, PairState& ps, const std::vector<Index>&
 }
 
 template <ModuleData Given>
-void unload(State& s, const Given& given, auto& state, const std::vector<Index>& which) {
+void unload(State& s, const Given& given, auto& state, const std::vector<Index>& which,
+            OnHost<Flag>) {
   Given::Module::take_out(given, state, which, on_host(s.nodes.out).data());
 }
 
@@ -120,12 +123,13 @@ Real stored_energy(const Model& m, const State& s) {
          e.terms[energy_term("contact")];
 }
 
-void hide_faces(State& s, const std::vector<Flag>& hidden) {
+void change_exposed(const Model& m, State& s, const Column<Flag>& open) {
+  const auto opens = on_host(open);
   const auto exposed_face = on_host(s.search.exposed_face);
   const auto edge_friction = on_host(s.edges.friction), edge_dashpot = on_host(s.edges.dashpot);
   const auto friction = on_host(s.springs.friction), dashpot = on_host(s.springs.dashpot);
   for (std::size_t x = 0; x < exposed_face.size(); ++x) {
-    if (!hidden[exposed_face[x]]) continue;
+    if (opens[exposed_face[x]]) continue;
     s.taken_out_friction += edge_friction[x];
     s.taken_out_dashpot += edge_dashpot[x];
     for (std::size_t slot = 4 * x; slot < 4 * x + 4; ++slot) {
@@ -133,7 +137,7 @@ void hide_faces(State& s, const std::vector<Flag>& hidden) {
       s.taken_out_dashpot += dashpot[slot];
     }
   }
-  hide(s, hidden);
+  renew_exposed(m, s, open);
 }
 
 void take_out(Model& m, State& s, const Flag* leaves) {
@@ -147,18 +151,19 @@ void take_out(Model& m, State& s, const Flag* leaves) {
     stop.push_back(i);
   }
   stop_nodes(s.nodes, stop);
+  Column<Flag> open = open_faces(s);
+  const auto opens = on_host(open);
   for_each_set(m, s, [&](auto, const auto& set, auto& state) {
     const auto is_out = items_out(m, s, set);
     std::vector<Index> which;
     for (Index i = 0; i < set.count; ++i)
       if (is_out(i)) which.push_back(i);
-    unload(s, set, state, which);
+    unload(s, set, state, which, opens);
   });
-  std::vector<Flag> hidden(m.face_count);
   const auto face_nodes = on_host(m.face_nodes);
-  for (Index f = 0; f < m.face_count; ++f) hidden[f] = out[face_nodes[4 * f]];
-  hide_faces(s, hidden);
-  sort_exposed(s);
+  for (Index f = 0; f < m.face_count; ++f)
+    if (out[face_nodes[4 * f]]) opens[f] = 0;
+  change_exposed(m, s, open);
   s.taken_out += before - stored_energy(m, s);
   hold_taken_out(m, s);
   list_pairs_of_exposed(m, s, {.everything_awake = true}, true);

@@ -1,8 +1,6 @@
 // take_out.hpp - blocks that leave the computation. Host code.
 #pragma once
 
-#include <vector>
-
 #include "core/model/model.hpp"
 #include "core/model/state.hpp"
 
@@ -17,8 +15,9 @@ void take_out(Model& model, State& state, const Flag* leaves);
 /// Keep removed blocks fixed, after Python has set arrays of the model.
 void hold_taken_out(Model& model, State& state);
 
-/// Hide faces, given by a flag for each; losses of their contacts stay in the ledger.
-void hide_faces(State& state, const std::vector<Flag>& hidden);
+/// Expose the faces with a flag, and no others, see `renew_exposed`; losses of the contacts of
+/// faces that leave stay in the ledger.
+void change_exposed(const Model& model, State& state, const Column<Flag>& open);
 
 /// Energy that counts as stored  [J].
 Real stored_energy(const Model& model, const State& state);

@@ -102,18 +102,17 @@ FAULTS = [
     Mutant(
         "lumped for good",
         "blocks move lumped masses after their last bond is released",
-        "core/nodes/masses.cpp",
-        "if (is_active(i)) for_each_node",
-        "for_each_node",
+        "core/nodes/lumped_blocks.hpp",
+        "if (!is_live(PairStatus(status[pair.i]))) return;",
+        "",
         "tests/core/nodes/test_masses.cpp",
     ),
     Mutant(
         "lumped unbooked",
         "kinetic energy that exact masses take is not booked",
         "core/nodes/masses.cpp",
-        "  else if (!std::equal(lumped.begin(), lumped.end(), on_host(s.nodes.lumped).begin()))\n"
-        "    book_change(m, s, change);",
-        "  else\n    change();",
+        "book_change(m, s, [&] { lumped.swap(now); });",
+        "lumped.swap(now);",
         "tests/core/nodes/test_masses.cpp",
     ),
     Mutant(

@@ -1,7 +1,8 @@
 // edge_contacts.cpp - see edge_contacts.hpp.
 #include "core/contact/narrow_phase/edge_contacts.hpp"
 
-#include <algorithm>
+#include "core/base/primitives.hpp"
+#include "core/contact/narrow_phase/edge_rows.hpp"
 
 namespace cdem {
 
@@ -11,6 +12,13 @@ void swap_with_old(EdgeState& e) {
   e.first.swap(e.old_first);
   e.contact.swap(e.old_contact);
   e.state.swap(e.old_state);
+}
+
+EdgeRowsBefore rows_of(const EdgeState& e) {
+  return {.first = e.first.data(),
+          .contact = e.contact.data(),
+          .state = e.state.data(),
+          .reaction = e.reaction.data()};
 }
 
 }  // namespace
@@ -26,80 +34,60 @@ void make_room_for_edges(State& s) {
   e.seen.renew(contacts);
 }
 
-void add_edges(State& s, const std::vector<EdgeContact>& contacts, const ContactState& as) {
-  if (contacts.empty()) return;
+void add_edges(State& s, const Column<Index>& contacts, const ContactState& as) {
+  const Index added = Index(contacts.size() / 4);
+  if (added == 0) return;
   s.search.inner.held_known = false;
-  const std::size_t count = s.search.exposed_face.size();
   EdgeState& e = s.edges;
-  const auto first_before = on_host(e.first), contact_before = on_host(e.contact);
-  const auto state_before = on_host(e.state), reaction_before = on_host(e.reaction);
-  std::vector<EdgeContact> list;
-  std::vector<ContactState> state;
-  std::vector<Real> reaction;
-  std::vector<Index> first{0};
-  for (std::size_t x = 0; x < count; ++x) {
-    for (Index c = first_before[x]; c < first_before[x + 1]; ++c) {
-      list.push_back(EdgeContact::at(contact_before.data(), c));
-      state.push_back(ContactState::at(state_before.data(), c));
-      for (Index k = 0; k < 8; ++k) reaction.push_back(reaction_before[8 * std::size_t(c) + k]);
-    }
-    for (const EdgeContact& one : contacts) {
-      if (one.mother / 4 != Index(x)) continue;
-      const bool has = std::any_of(list.begin() + first[x], list.end(), [&](const EdgeContact& c) {
-        return c.mother == one.mother && c.edge == one.edge;
-      });
-      if (has) continue;
-      list.push_back(one);
-      state.push_back(as);
-      reaction.resize(reaction.size() + 8);
-    }
-    first.push_back(Index(list.size()));
-  }
-  e.first.assign(first);
-  e.reaction.assign(reaction);
-  e.contact.renew(4 * list.size());
-  e.state.renew(8 * list.size());
-  const auto contact_now = on_host(e.contact);
-  const auto state_now = on_host(e.state);
-  for (std::size_t c = 0; c < list.size(); ++c) {
-    list[c].store(contact_now.data(), c);
-    state[c].store(state_now.data(), c);
-  }
+  const Index count = Index(e.first.size()) - 1;
+  Column<Index> added_first, list, first, contact;
+  Column<Real> state, reaction;
+  list_rows({}, added, added, count, MotherOfEdge{contacts.data()}, added_first, list);
+  const AddedEdges all{.rows = rows_of(e),
+                       .contact = contacts.data(),
+                       .first = added_first.data(),
+                       .added = list.data()};
+  first.renew(std::size_t(count) + 1);
+  for_each_item({}, count, CountAddedEdges{all, first.data() + 1});
+  const std::size_t sum = scan({}, count, first.data() + 1, first.data());
+  contact.renew(4 * sum);
+  state.renew(8 * sum);
+  reaction.renew(8 * sum);
+  for_each_item({}, count,
+                PutAddedEdges{.added = all,
+                              .begin = as,
+                              .first = first.data(),
+                              .rows = {contact.data(), state.data(), reaction.data()}});
+  e.first.swap(first);
+  e.contact.swap(contact);
+  e.state.swap(state);
+  e.reaction.swap(reaction);
 }
 
-void sort_edges(State& s, const std::vector<Index>& from, const std::vector<Index>& to) {
+void move_edges(State& s, const Column<Index>& before, const Column<Index>& to) {
+  EdgeState& e = s.edges;
   begin_edges(s);
   s.search.inner.held_known = false;
-  EdgeState& e = s.edges;
-  const std::vector<Real> reaction_before = fetch(e.reaction);
-  e.contact.renew(e.old_contact.size());
-  e.state.renew(e.old_state.size());
-  const auto first_before = on_host(e.old_first), contact_before = on_host(e.old_contact);
-  const auto contact = on_host(e.contact);
-  const auto state_before = on_host(e.old_state), state = on_host(e.state);
-  const auto reaction = on_host(e.reaction);
-  std::vector<Index> first(from.size() + 1);
-  Index next = 0;
-  for (std::size_t x = 0; x < from.size(); ++x) {
-    first[x] = next;
-    for (Index c = first_before[from[x]]; c < first_before[from[x] + 1]; ++c) {
-      const EdgeContact old = EdgeContact::at(contact_before.data(), c);
-      if (to[old.face] < 0) continue;
-      EdgeContact{.mother = 4 * Index(x) + old.mother % 4,
-                  .face = to[old.face],
-                  .edge = old.edge,
-                  .before = old.before}
-          .store(contact.data(), next);
-      ContactState::at(state_before.data(), c).store(state.data(), next);
-      std::copy_n(reaction_before.begin() + 8 * std::size_t(c), 8,
-                  reaction.begin() + 8 * std::size_t(next++));
-    }
-  }
-  first[from.size()] = next;
-  e.first.assign(first);
-  e.contact.resize(4 * std::size_t(next));
-  e.state.resize(8 * std::size_t(next));
-  e.reaction.resize(8 * std::size_t(next));
+  Column<Real> reaction_before;
+  reaction_before.swap(e.reaction);
+  const Index count = Index(before.size());
+  const KeptEdges kept{.rows = {.first = e.old_first.data(),
+                                .contact = e.old_contact.data(),
+                                .state = e.old_state.data(),
+                                .reaction = reaction_before.data()},
+                       .before = before.data(),
+                       .to = to.data()};
+  e.first.renew(std::size_t(count) + 1);
+  Index* const first = e.first.data();
+  for_each_item({}, count, CountKeptEdges{kept, first + 1});
+  const std::size_t sum = scan({}, count, first + 1, first);
+  e.contact.renew(4 * sum);
+  e.state.renew(8 * sum);
+  e.reaction.renew(8 * sum);
+  for_each_item({}, count,
+                MoveKeptEdges{.kept = kept,
+                              .first = first,
+                              .rows = {e.contact.data(), e.state.data(), e.reaction.data()}});
 }
 
 }  // namespace cdem

@@ -1,7 +1,5 @@
-// edge_contacts.hpp - the list of the contacts of semi-edges, made in every step. Host code.
+// edge_contacts.hpp - the list of the contacts of semi-edges, made in every step.
 #pragma once
-
-#include <vector>
 
 #include "core/model/state.hpp"
 
@@ -13,11 +11,12 @@ void begin_edges(State& state);
 /// After it: room for the contacts found.
 void make_room_for_edges(State& state);
 
-/// Add contacts to the list in this state; contacts already listed are unchanged.
-void add_edges(State& state, const std::vector<EdgeContact>& contacts, const ContactState& as);
+/// Add contacts, rows of 4 of EdgeContact, to the list in this state; contacts already listed are
+/// unchanged.
+void add_edges(State& state, const Column<Index>& contacts, const ContactState& as);
 
-/// Bring the list into a new order of the exposed faces: place x was from[x], y becomes to[y];
-/// where that is -1 the contacts end.
-void sort_edges(State& state, const std::vector<Index>& from, const std::vector<Index>& to);
+/// Bring the list to the new places of exposed faces, see PairPlaces. Contacts with faces that have
+/// left end.
+void move_edges(State& state, const Column<Index>& before, const Column<Index>& to);
 
 }  // namespace cdem

@@ -12,7 +12,7 @@ namespace cdem {
 void find_target_faces(const Model& m, State& s, Queue q) {
   const PhaseTimer timer(s, Phase::search);
   const Index count = Index(s.search.exposed_face.size());
-  s.springs.unresolved.resize(s.springs.target.size());
+  s.springs.unresolved.renew(s.springs.target.size());
   const FaceSearch search = face_search(m, s);
   for_each_item(q, count, BeginTargets{search.springs});
   for_each_selected(q, count, UpdateHeldTargets{search});

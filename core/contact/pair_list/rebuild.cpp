@@ -32,12 +32,9 @@ void rebuild_pair_list(const Model& m, State& s, const StepPlan& plan) {
   const bool first = s.built_step < 0;
   if (first) {
     s.search.face_exposed.resize(m.face_count, -1);
-    const auto begins = on_host(m.face_initially_exposed);
-    for (Index f = 0; f < m.face_count; ++f)
-      if (begins[f]) expose(s, f);
+    renew_exposed(m, s, m.face_initially_exposed);
   }
   const bool released = release_bonds(m, s) || first;
-  sort_exposed(s);
   await_contacts(m, s);
   list_pairs_of_exposed(m, s, plan, released);
 }
@@ -46,12 +43,12 @@ void list_pairs_of_exposed(const Model& m, State& s, const StepPlan& plan, bool 
   join_surfaces(m, s, released);
   list_exposed(m, s);
   list_candidates(m, s);
-  sum_stiffness(m, s);
   if (released) {
     list_corners(m, s);
     list_lumped(m, s);
   }
   list_contact_corners(m, s);
+  sum_stiffness(m, s);
   if (!plan.everything_awake) list_awake_nodes(m, s);
   s.built_step = s.step;
   ++s.rebuilds;

@@ -23,6 +23,24 @@ TEST_CASE("raise hands out every number once, on one thread and on several") {
   omp_set_num_threads(threads);
 }
 
+TEST_CASE("the largest and the smallest number are kept, on one thread and on several") {
+  constexpr Index count = 4000;
+  const int threads = omp_get_max_threads();
+  for (const bool alone : {true, false}) {
+    omp_set_num_threads(alone ? 1 : 3);
+    Real most = 0, least = infinity;
+#pragma omp parallel for schedule(static)
+    for (Index i = 0; i < count; ++i) {
+      const Real number = 0.5 + (i * 7 + 13) % count;
+      raise_to(most, number, alone);
+      lower_to(least, number, alone);
+    }
+    CHECK(most == count - 0.5);
+    CHECK(least == 0.5);
+  }
+  omp_set_num_threads(threads);
+}
+
 TEST_CASE("set sets a flag") {
   Flag flag = 0;
   set(flag);

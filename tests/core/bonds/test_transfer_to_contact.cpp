@@ -20,8 +20,9 @@ struct Slid : Scene {
     add_box({0, 0, 1}, {1, 1, 1});
     build();
     start();
-    expose(state, on_host(model.quads.faces)[0]);
-    expose(state, on_host(model.quads.faces)[1]);
+    Column<Flag> open = open_faces(state);
+    for (const Index side : {0, 1}) on_host(open)[on_host(model.quads.faces)[side]] = 1;
+    renew_exposed(model, state, open);
     for (Index i = 8; i < 16; ++i) put(motion(i), position(i) + jump);
   }
   Real transfer() { return transfer_to_contact(model, state, model.quads, state.quads, 0); }

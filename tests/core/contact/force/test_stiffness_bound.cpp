@@ -1,5 +1,6 @@
 // The stiffness that bonds and contacts put on each node at most.
 #include "core/contact/force/stiffness_bound.hpp"
+#include "core/nodes/corner_lists.hpp"
 #include "tests/core/scene.hpp"
 
 namespace cdem::test {
@@ -17,6 +18,7 @@ TEST_CASE("a live bond puts its share on its nodes, a released one nothing") {
   for (Index i = 0; i < 16; ++i)
     CHECK(on_host(scene.state.node_bonds)[i] == (scene.position(i).z == 1 ? share : 0));
   on_host(scene.state.quads.status)[0] = 0;
+  list_corners(scene.model, scene.state);
   sum_stiffness(scene.model, scene.state);
   for (Index i = 0; i < 16; ++i) CHECK(on_host(scene.state.node_bonds)[i] == 0);
 }
