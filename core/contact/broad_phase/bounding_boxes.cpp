@@ -19,7 +19,10 @@ void BoxTreeColumns::make(Queue q, const Column<Box>& boxes) {
   codes_.renew(count);
   if (count == 0) return;
   const auto group = [&](const Index* order) {
-    for_each_item(q, groups_of(count), GroupBoxes{count, order, boxes.data(), groups_.data()});
+    for_each_item(
+        q, groups_of(count),
+        GroupBoxes{
+            .count = count, .order = order, .boxes = boxes.data(), .groups = groups_.data()});
     for (Index level = 1; level < levels_; ++level) {
       const Index below = level_first_[level] - level_first_[level - 1];
       for_each_item(q, groups_of(below),

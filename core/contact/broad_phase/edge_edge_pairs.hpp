@@ -3,19 +3,12 @@
 
 #include "core/base/parallel.hpp"
 #include "core/contact/broad_phase/moving_edge.hpp"
+#include "core/contact/broad_phase/pair_items.hpp"
 #include "core/records/contact_records.hpp"
 
 namespace cdem {
 
-/// An edge of the first patch of a pair, and one of the second.
-struct EdgeItem {
-  Index pair;
-  std::uint8_t one, other;
-  std::uint8_t sides;  // of each other on which they may touch, as bits, see TwoLines
-  std::uint8_t ways;   // in which they may, as bits, see EdgeWays
-};
-
-/// The two edges of such an item.
+/// The two edges of an item.
 struct TwoPatchEdges {
   const PairContext& f;
   const PatchPair& pair;
@@ -51,7 +44,9 @@ struct ListEdgesOfPatches {
     for (Index e = 0; e < a.edge_count; ++e) {
       const Index across = may_touch(pair, 0, a, e) ? pair.across(a.edge[e]) : 0;
       for (Index g = 0; across && g < b.edge_count; ++g)
-        if (across & at_b[g]) act(EdgeItem{place.i, std::uint8_t(e), std::uint8_t(g), 0, 0});
+        if (across & at_b[g])
+          act(EdgeItem{
+              .pair = place.i, .ways = 0, .one = unsigned(e), .other = unsigned(g), .sides = 0});
     }
   }
 
@@ -74,9 +69,9 @@ struct EdgesMayTouch {
     if (lines_are_far(two.p, two.q, room)) return false;
     const SharedEnds ends(two.p, two.q);
     if (ends.bonded || stay_together(two, ends)) return false;
-    item.sides = std::uint8_t(touching_sides(two, room));
+    item.sides = unsigned(touching_sides(two, room));
     if (!item.sides) return false;
-    item.ways = std::uint8_t(ways_to_touch(two, ends));
+    item.ways = unsigned(ways_to_touch(two, ends));
     return item.ways != 0;
   }
 
@@ -173,9 +168,9 @@ struct WriteEdgePairs {
     EdgeWays::visit(Flag(item.ways), [&](Index way) {
       const Index i = two.of_a.face[way >> 1 & 1], j = two.of_b.face[way & 1];
       if (EdgeWays::is_reverse(way))
-        listed[1] |= ListedFacePairs::bit(j, i);
+        listed[1] |= PatchPair::bit(j, i);
       else
-        listed[0] |= ListedFacePairs::bit(i, j);
+        listed[0] |= PatchPair::bit(i, j);
     });
     for (Index k = 0; k < 2; ++k) raise_bits(pairs[item.pair].listed[k], listed[k], alone);
   }

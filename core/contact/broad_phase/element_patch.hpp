@@ -38,7 +38,7 @@ struct Indented {
 
 /// The exposed faces of one element, with their vertices and edges, each once.
 struct Patch {
-  using Place = std::int8_t;  // among the few of a patch or a face
+  using Place = std::int16_t;  // among the few of a patch or a face
   /// An edge: the faces of the patch that meet there, and which of their sides it is.
   struct Edge {
     Index id;

@@ -2,9 +2,11 @@
 #include "core/contact/broad_phase/pair_search.hpp"
 
 #include "core/base/primitives.hpp"
+#include "core/contact/broad_phase/edge_edge_pairs.hpp"
 #include "core/contact/broad_phase/exposed_patches.hpp"
 #include "core/contact/broad_phase/patch_pairs.hpp"
 #include "core/contact/broad_phase/predicted_motion.hpp"
+#include "core/contact/broad_phase/vertex_face_pairs.hpp"
 #include "core/contact/geometry/views.hpp"
 
 namespace cdem {

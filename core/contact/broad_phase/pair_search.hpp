@@ -6,8 +6,9 @@
 #pragma once
 
 #include "core/base/column.hpp"
-#include "core/contact/broad_phase/edge_edge_pairs.hpp"
-#include "core/contact/broad_phase/vertex_face_pairs.hpp"
+#include "core/bonds/bonded_overlaps.hpp"
+#include "core/contact/broad_phase/moving_edge.hpp"
+#include "core/contact/broad_phase/pair_items.hpp"
 #include "core/model/model.hpp"
 #include "core/model/state.hpp"
 

@@ -20,7 +20,7 @@ struct ListPatchPairs {
       const Patch& other = patches[q];
       if ((q > place.i || !other.movable) && patch.block != other.block)
         act(PatchPair{
-            .one = place.i, .other = q, .edge = {}, .row = {}, .vertex = {}, .listed = {}});
+            .one = place.i, .other = q, .edge = {}, .vertex = {}, .meets = 0, .listed = {}});
     });
   }
 };

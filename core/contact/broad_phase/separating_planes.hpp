@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "core/bonds/bonded_overlaps.hpp"
+#include "core/bonds/bonded_view.hpp"
 #include "core/contact/broad_phase/element_patch.hpp"
 #include "core/contact/broad_phase/predicted_node.hpp"
 #include "core/contact/geometry/face_geometry.hpp"
@@ -26,34 +26,27 @@ struct PairContext {
   const Index *target, *edge_first, *edge_contact;  // [slot], [exposed + 1], rows of EdgeContact
 };
 
-/// Parts of two patches that may touch, as bits: in `row` those faces of the second that may touch
-/// a face of the first; the vertices and edges of either that a plane keeps out of reach of the
-/// other; in `listed` the pairs of faces on the lists, see ListedFacePairs.
+/// A pair of patches, and their parts, as bits.
 struct PatchPair {
   Index one, other;
-  std::uint16_t edge[2];
-  std::uint8_t row[6], vertex[2];
-  std::uint64_t listed[2];
+  std::uint16_t edge[2], vertex[2];  // of either, that a plane keeps out of reach of the other
+  std::uint64_t meets;               // faces that may touch, see `bit`
+  std::uint64_t listed[2];  // faces on the lists, see `bit`: with those of the first as mothers,
+                            // and with those of the second
+
+  /// Of face i of one patch and face j of the other.
+  CDEM_HD static std::uint64_t bit(Index i, Index j) { return std::uint64_t(1) << (6 * i + j); }
 
   /// May face i of patch `of` and face j of the other touch?
   CDEM_HD bool may_meet(Index of, Index i, Index j) const {
-    return (of == 0 ? row[i] >> j : row[j] >> i) & 1;
+    return (meets & (of == 0 ? bit(i, j) : bit(j, i))) != 0;
   }
   /// The faces of the second that may touch one at an edge of the first, and the faces at an edge.
   CDEM_HD Index across(const Patch::Edge& e) const {
-    return row[e.face[0]] | row[e.face[e.faces - 1]];
+    return Index((meets >> 6 * e.face[0] | meets >> 6 * e.face[e.faces - 1]) & 63);
   }
   CDEM_HD static Index at(const Patch::Edge& e) {
     return 1 << e.face[0] | 1 << e.face[e.faces - 1];
-  }
-};
-
-/// Pairs of faces of two patches that lists have: in word 0 with those of the first patch as
-/// mothers, in word 1 with those of the second. A bit for each face of the mother and each of the
-/// other.
-struct ListedFacePairs {
-  CDEM_HD static std::uint64_t bit(Index mother, Index face) {
-    return std::uint64_t(1) << (6 * mother + face);
   }
 };
 
@@ -125,7 +118,7 @@ struct MayMeet {
   CDEM_HD bool operator()(const PatchPair& pair) const {
     const Patch &a = f.patches[pair.one], &b = f.patches[pair.other];
     const Real room = farthest_contact(f.rules, a, b);
-    const Vec3<Real> closing = last_step * (b.displacement - a.displacement);
+    const Vec3<Real> closing = Real(last_step) * (b.displacement - a.displacement);
     return !hold_apart(a, a, b, closing, room) && !hold_apart(b, a, b, closing, room);
   }
 
@@ -161,7 +154,7 @@ struct SeparatedParts {
 
   CDEM_HD SeparatedParts(const PairContext& f, const Patch& a, const Patch& b) {
     const Real room = farthest_crossing(f.rules, a, b);
-    const Vec3<Real> closing = last_step * (b.displacement - a.displacement);
+    const Vec3<Real> closing = Real(last_step) * (b.displacement - a.displacement);
     unsigned bit = 1;
     for (Index k = 0; k < 2; ++k) {
       const Patch& of = k == 0 ? a : b;
@@ -216,12 +209,12 @@ struct FindMeetingParts {
   CDEM_HD bool operator()(PatchPair& pair) const {
     const Patch &a = f.patches[pair.one], &b = f.patches[pair.other];
     const SeparatedParts separated(f, a, b);
-    bool any = false;
-    for (Index i = 0; i < 6; ++i) {
-      pair.row[i] = i < a.face_count ? faces_that_meet(separated, a.face[i], i, b) : 0;
-      any = any || pair.row[i];
-    }
-    if (!any) return false;
+    pair.meets = 0;
+    for (Index i = 0; i < a.face_count; ++i)
+      for (Index j = 0; j < b.face_count; ++j)
+        if (!separated.hold_apart(i, j) && may_touch(a.face[i], b.face[j]))
+          pair.meets |= PatchPair::bit(i, j);
+    if (!pair.meets) return false;
     for (Index of = 0; of < 2; ++of) {
       pair.vertex[of] = 0, pair.edge[of] = 0;
       for (Index v = 0; v < 8; ++v) pair.vertex[of] |= (separated.vertex[of][v] != 0) << v;
@@ -233,20 +226,12 @@ struct FindMeetingParts {
   }
 
  private:
-  CDEM_HD Index faces_that_meet(const SeparatedParts& separated, Index x, Index i,
-                                const Patch& b) const {
-    Index bits = 0;
-    for (Index j = 0; j < b.face_count; ++j)
-      if (!separated.hold_apart(i, j) && may_touch(f.exposed[x], f.exposed[b.face[j]]) &&
-          !f.bonded.faces(x, b.face[j]))
-        bits |= 1 << j;
-    return bits;
-  }
   /// May anything of the two faces touch before the next rebuild?
-  CDEM_HD bool may_touch(const ExposedFace& x, const ExposedFace& y) const {
+  CDEM_HD bool may_touch(Index place_x, Index place_y) const {
+    const ExposedFace &x = f.exposed[place_x], &y = f.exposed[place_y];
     return x.block != y.block && (x.movable || y.movable) &&
            dot(x.normal, y.normal) < -f.rules.opposing + x.rotation + y.rotation && !apart(x, y) &&
-           !apart(y, x);
+           !apart(y, x) && !f.bonded.faces(place_x, place_y);
   }
   /// All vertices of x stay above the plane of y until the next rebuild: they cannot touch.
   CDEM_HD bool apart(const ExposedFace& x, const ExposedFace& y) const {
@@ -264,8 +249,8 @@ struct FindMeetingParts {
     for (Index i = 0; i < 6; ++i)
       for (Index j = 0; j < 6; ++j) {
         if (!pair.may_meet(0, i, j)) continue;
-        pair.listed[0] |= ListedFacePairs::bit(i, j);
-        pair.listed[1] |= ListedFacePairs::bit(j, i);
+        pair.listed[0] |= PatchPair::bit(i, j);
+        pair.listed[1] |= PatchPair::bit(j, i);
       }
   }
 };

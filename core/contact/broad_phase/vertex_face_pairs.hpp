@@ -2,19 +2,12 @@
 #pragma once
 
 #include "core/base/parallel.hpp"
+#include "core/contact/broad_phase/pair_items.hpp"
 #include "core/contact/broad_phase/separating_planes.hpp"
 
 namespace cdem {
 
-/// A vertex of one patch of a pair, and a face of the other.
-struct VertexFaceItem {
-  Index pair;
-  std::uint8_t of;            // 0: the vertex is of the first patch, 1: of the second
-  std::uint8_t face, vertex;  // of the other patch, of this one
-  std::uint8_t mothers;       // faces at the vertex with a semi-spring that may touch, as bits
-};
-
-/// The two patches of such an item.
+/// The two patches of an item.
 struct VertexAndFace {
   const PairContext& f;
   const PatchPair& pair;
@@ -61,8 +54,11 @@ struct ListVertexFaces {
           for (Index i = 0; i < a.face_count; ++i)
             mothers |= (meets >> i & 1 && a.corner[v][i] >= 0) << i;
           if (mothers)
-            act(VertexFaceItem{place.i, std::uint8_t(of), std::uint8_t(j), std::uint8_t(v),
-                               std::uint8_t(mothers)});
+            act(VertexFaceItem{.pair = place.i,
+                               .mothers = unsigned(mothers),
+                               .of = unsigned(of),
+                               .face = unsigned(j),
+                               .vertex = unsigned(v)});
         }
       }
     }
@@ -108,7 +104,7 @@ struct VertexMayTouch {
       const Vec3<Real> indented = v + f.rules.indentation * (at.x(i).center - v);
       if (stays_beside(v, indented, at.x(i), at.place_y(),
                        f.rules.tolerance * at.length() + motion_between(at.x(i), at.y())))
-        item.mothers &= ~(1 << i);
+        item.mothers &= ~(1u << i);
     }
     return item.mothers != 0;
   }
@@ -217,7 +213,7 @@ struct WriteVertexFaces {
       const Real part = f.rules.indentation;
       indented = max_of(part * (norm(x.center - v) + 2 * x.deviation), indented);
       deviation = max_of(x.deviation_soon, deviation);
-      listed |= ListedFacePairs::bit(i, at.item.face);
+      listed |= PatchPair::bit(i, at.item.face);
     }
     raise_bits(pairs[at.item.pair].listed[at.item.of], listed, alone);
     of[place.i] = at.node();
@@ -253,11 +249,6 @@ struct WriteVertexFaces {
                         motion};
     for (Index k = 0; k < 6; ++k) rooms[std::size_t(k) * stride] = float(all[k]);
   }
-};
-
-/// A vertex of a mother face on another exposed face, and the pair of vertex and face.
-struct Candidate {
-  Index slot, face, pair;
 };
 
 /// Call act(candidate) for the semi-springs of a vertex that may touch a face.

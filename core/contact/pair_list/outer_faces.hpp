@@ -21,8 +21,8 @@ struct ListFacePairs {
     const Patch &a = patches[pair.one], &b = patches[pair.other];
     for (Index i = 0; i < a.face_count; ++i)
       for (Index j = 0; j < b.face_count; ++j) {
-        if (pair.listed[0] & ListedFacePairs::bit(i, j)) act(FacePair{a.face[i], b.face[j]});
-        if (pair.listed[1] & ListedFacePairs::bit(j, i)) act(FacePair{b.face[j], a.face[i]});
+        if (pair.listed[0] & PatchPair::bit(i, j)) act(FacePair{a.face[i], b.face[j]});
+        if (pair.listed[1] & PatchPair::bit(j, i)) act(FacePair{b.face[j], a.face[i]});
       }
   }
 };

@@ -2,6 +2,7 @@
 #include "core/contact/pair_list/outer_list.hpp"
 
 #include "core/base/primitives.hpp"
+#include "core/contact/broad_phase/edge_edge_pairs.hpp"
 #include "core/contact/broad_phase/exposed_patches.hpp"
 #include "core/contact/broad_phase/pair_search.hpp"
 #include "core/contact/broad_phase/predicted_motion.hpp"

@@ -103,7 +103,7 @@ TEST_CASE("faces that a plane holds apart have no vertex inside the other block 
     const TwoBlocks blocks(random);
     const PairSearch& lists = blocks.lists;
     const PairContext context = on_host(pair_context(blocks.model, blocks.state, lists));
-    PatchPair pair{.one = 0, .other = 1, .edge = {}, .row = {}, .vertex = {}, .listed = {}};
+    PatchPair pair{.one = 0, .other = 1, .edge = {}, .vertex = {}, .meets = 0, .listed = {}};
     const bool meet = FindMeetingParts{context, false}(pair);
     const Real horizon = blocks.state.search.outer.lookahead_time;
     (meet ? listed : masked) += 1;
@@ -134,9 +134,9 @@ TEST_CASE("listed pairs of faces are found with either as mother") {
     patches[k].face_count = 2;
     patches[k].face[0] = 10 + 10 * k, patches[k].face[1] = 11 + 10 * k;
   }
-  PatchPair pair{.one = 0, .other = 1, .edge = {}, .row = {}, .vertex = {}, .listed = {}};
-  pair.listed[0] = ListedFacePairs::bit(0, 1);
-  pair.listed[1] = ListedFacePairs::bit(1, 0);
+  PatchPair pair{.one = 0, .other = 1, .edge = {}, .vertex = {}, .meets = 0, .listed = {}};
+  pair.listed[0] = PatchPair::bit(0, 1);
+  pair.listed[1] = PatchPair::bit(1, 0);
   std::vector<FacePair> found;
   ListFacePairs{patches, &pair}.visit(One{0}, [&](const FacePair& of) { found.push_back(of); });
   REQUIRE(found.size() == 2);
