@@ -35,6 +35,7 @@ struct Queue {
 /// Zeroed, 64-byte aligned memory that the kernels can reach (managed memory on CUDA, an arena of
 /// emulated.hpp).
 void* allocate(std::size_t bytes);
+/// Give memory back once the launches that may use it are done.
 void release(void* memory);
 
 /// Zeroed memory of a few words that kernels set and the host reads: on CUDA it is the host's, for

@@ -406,6 +406,10 @@ void __tsan_write_range(void* p, std::size_t n) {
     touch(const_cast<type*>(p), bits / 8, Way::raise, __builtin_return_address(0));              \
     return __atomic_fetch_add(p, value, __ATOMIC_SEQ_CST);                                       \
   }                                                                                              \
+  type __tsan_atomic##bits##_fetch_or(volatile type* p, type value, int) {                       \
+    touch(const_cast<type*>(p), bits / 8, Way::raise, __builtin_return_address(0));              \
+    return __atomic_fetch_or(p, value, __ATOMIC_SEQ_CST);                                        \
+  }                                                                                              \
   int __tsan_atomic##bits##_compare_exchange_weak(volatile type* p, type* old, type value, int,  \
                                                   int) {                                         \
     touch(const_cast<type*>(p), bits / 8, Way::raise, __builtin_return_address(0));              \

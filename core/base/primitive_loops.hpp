@@ -325,7 +325,6 @@ void keep_items(Queue queue, const Kernel& kernel, Column<Item>& items) {
   Column<Item> kept;
   kept.renew(scan(queue, count, first + 1, first));
   for_each_item(queue, count, PutKept<Item>{first, items.data(), kept.data()});
-  finish(queue);  // before the memory of the items is given back
   items.swap(kept);
 }
 

@@ -189,7 +189,8 @@ Index scan(Queue, Index count, const Index* counts, Index* first) {
 #endif
 
 /// Byte after byte from the lowest one, by as many counts as there are values of a byte and parts.
-void sort_pairs(Queue, Index count, std::uint64_t* keys, Index* values) {
+void sort_pairs(Queue queue, Index count, std::uint64_t* keys, Index* values) {
+  finish(queue);
   const Transfer transfer;
   constexpr Index digits = 256;
   const Parts parts = parts_of(count, 16 * worth_threads);

@@ -92,7 +92,6 @@ void list_patches(const Model& m, const State& s, PairSearch& search) {
   search.edge_sides.renew(2 * std::size_t(scan(q, patches, edges.data(), edge_first.data())));
   for_each_item(q, patches,
                 ListEdgeSides{edge_first.data(), search.patches.data(), search.edge_sides.data()});
-  finish(q);  // before the memory of the lists is given back
 }
 
 void search_pairs(const Model& m, const State& s, PairSearch& search) {

@@ -45,6 +45,7 @@ struct PatchPair {
   CDEM_HD Index across(const Patch::Edge& e) const {
     return Index((meets >> 6 * e.face[0] | meets >> 6 * e.face[e.faces - 1]) & 63);
   }
+  bool operator==(const PatchPair&) const = default;
   CDEM_HD static Index at(const Patch::Edge& e) {
     return 1 << e.face[0] | 1 << e.face[e.faces - 1];
   }

@@ -55,7 +55,6 @@ void list_vertex_faces(const PairContext& f, PairSearch& search, SearchState& s,
   for_each_item(
       q, listed,
       WriteSlotFaces{candidates.data(), outer.slot_pairs.data(), outer.slot_faces.data()});
-  finish(q);  // before the memory of the candidates is given back
 }
 
 /// List the pairs of edges, and for every edge of the mesh those with edges of higher numbers.
@@ -75,7 +74,6 @@ void list_edge_pairs(const Model& m, const PairContext& f, PairSearch& search, S
                                .codes = outer.ee_codes.data(),
                                .room = outer.ee_bounds.data(),
                                .alone = runs_alone()});
-  finish(q);
   outer.ee_sides.swap(search.edge_sides);
   outer.edge_first.resize(0);
   outer.edge_others.renew(count);
@@ -100,7 +98,6 @@ void list_acting_faces(const PairSearch& search, SearchState& s, Queue q) {
   list_rows(q, count, count, faces, RowOfActingFace{pairs.data()}, outer.acting_first,
             outer.faces_acting_on);
   for_each_item(q, count, WriteActingFaces{pairs.data(), outer.faces_acting_on.data()});
-  finish(q);
 }
 
 }  // namespace

@@ -29,6 +29,23 @@ struct ToRows {
   }
 };
 
+/// A row has as many items as its number says: 1000 times the row, and the place in it.
+struct ItemsOfRow {
+  const Index* counts;
+  template <class Do>
+  CDEM_HD void visit(One row, const Do& act) const {
+    for (Index k = 0; k < counts[row.i]; ++k) act(std::int64_t(row.i) * 1000 + k);
+  }
+};
+/// Halves even items, and drops the others.
+struct HalveEven {
+  CDEM_HD bool operator()(std::int64_t& item) const {
+    if (item % 2 != 0) return false;
+    item /= 2;
+    return true;
+  }
+};
+
 template <class T>
 Column<T> column_of(const std::vector<T>& items) {
   Column<T> column;
@@ -134,6 +151,24 @@ TEST_CASE("select_items lists the items for which a kernel holds") {
     Column<Index> list;
     select_items({}, count, IsOdd{given.data()}, list);
     CHECK(fetch(list) == expected);
+  });
+}
+
+TEST_CASE("list_items lists what rows have, row after row; keep_items keeps and changes some") {
+  for_sizes_and_threads(6, [](Random& random, Index count) {
+    std::vector<Index> counts = random_indices(random, count, 4);
+    if (count > 9) counts[9] = 700;
+    std::vector<std::int64_t> expected, halves;
+    for (Index row = 0; row < count; ++row)
+      for (Index k = 0; k < counts[row]; ++k) expected.push_back(std::int64_t(row) * 1000 + k);
+    for (const std::int64_t item : expected)
+      if (item % 2 == 0) halves.push_back(item / 2);
+    const Column<Index> given = column_of(counts);
+    Column<std::int64_t> items;
+    list_items({}, count, ItemsOfRow{given.data()}, items);
+    CHECK(fetch(items) == expected);
+    keep_items({}, HalveEven{}, items);
+    CHECK(fetch(items) == halves);
   });
 }
 

@@ -1,5 +1,9 @@
 // The lists name every pair that comes into contact before they are made again.
+#include <algorithm>
+
+#include "core/contact/broad_phase/edge_edge_pairs.hpp"
 #include "core/contact/broad_phase/pair_search.hpp"
+#include "core/contact/broad_phase/vertex_face_pairs.hpp"
 #include "tests/core/scene.hpp"
 
 namespace cdem::test {
@@ -36,7 +40,93 @@ struct Rubble : Scene {
   }
 };
 
+/// Blocks of all shapes that overlap and fly, around a plate that is larger than all of them.
+struct Throw : Scene {
+  explicit Throw(std::uint64_t seed) {
+    Random random(seed);
+    add_box({-2, -2, -0.4}, {4, 4, 0.5}, true);
+    for (Index i = 0; i < 12; ++i) {
+      const Vec at = random.vector(0.8) + Vec{0, 0, 0.8};
+      if (i % 4 == 0) add_tet(random, at, random.between(0.3, 1));
+      if (i % 4 == 1) add<Hex8>(thrown(Reference<Hex8>::corners(), random, at));
+      if (i % 4 == 2) add<Wedge6>(thrown(Reference<Wedge6>::corners(), random, at));
+      if (i % 4 == 3) add<Pyramid5>(thrown(Reference<Pyramid5>::corners(), random, at));
+    }
+    build();
+    set_interface({{"friction_angle", 0.3}});
+    for (Index b = 1; b < 13; ++b) set_motion(b, random.vector(2), random.vector(2));
+    start();
+  }
+
+ private:
+  template <class Corners>
+  static Corners thrown(Corners corners, Random& random, const Vec& at) {
+    const Mat turn = random.between(0.2, 0.5) * random.rotation();
+    for (Vec& c : corners) c = at + turn * c;
+    return corners;
+  }
+};
+
+/// The lists of a search, made pair by pair from all patches.
+struct PairByPair {
+  std::vector<PatchPair> pairs;
+  std::vector<VertexFaceItem> vertex_faces;
+  std::vector<EdgeItem> edges;
+
+  PairByPair(const PairContext& f, const PairSearch& search) {
+    const Index count = Index(search.patches.size());
+    for (Index p = 0; p < count; ++p)
+      for (Index q = 0; q < count && f.patches[p].movable; ++q) {
+        const Patch &a = f.patches[p], &b = f.patches[q];
+        if ((q > p || !b.movable) && a.block != b.block && a.box.overlaps(b.box))
+          add(f, search.moving.data(), p, q);
+      }
+  }
+
+ private:
+  void add(const PairContext& f, const MovingEdge* moving, Index p, Index q) {
+    PatchPair pair{.one = p, .other = q, .edge = {}, .vertex = {}, .meets = 0, .listed = {}};
+    if (!MayMeet{f}(pair) || !FindMeetingParts{f, false}(pair)) return;
+    const One place{Index(pairs.size())};
+    pairs.push_back(pair);
+    ListVertexFaces{f, pairs.data()}.visit(place, [&](VertexFaceItem item) {
+      if (VertexMayTouch{f, pairs.data()}(item)) vertex_faces.push_back(item);
+    });
+    ListEdgesOfPatches{f, pairs.data(), moving}.visit(place, [&](EdgeItem item) {
+      if (EdgesMayTouch{f, pairs.data(), moving}(item)) edges.push_back(item);
+    });
+  }
+};
+
+template <class Item>
+bool are_same(const std::vector<Item>& one, const Column<Item>& other) {
+  const auto items = on_host(other);
+  return std::equal(one.begin(), one.end(), items.begin(), items.end());
+}
+
 }  // namespace
+
+TEST_CASE("passes over lists find the same pairs as a search of each pair by itself") {
+  std::size_t pairs = 0, vertices = 0, edges = 0;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    Throw blocks(seed);
+    for (int k = 0; k < 3; ++k) {
+      PairSearch search;
+      search_pairs(blocks.model, blocks.state, search);
+      const PairContext f = on_host(pair_context(blocks.model, blocks.state, search));
+      const PairByPair expected(f, search);
+      CHECK(are_same(expected.pairs, search.pairs));
+      CHECK(are_same(expected.vertex_faces, search.vertex_faces));
+      CHECK(are_same(expected.edges, search.edges));
+      pairs += expected.pairs.size(), vertices += expected.vertex_faces.size();
+      edges += expected.edges.size();
+      blocks.step(20);
+    }
+  }
+  CHECK(pairs > 1000);
+  CHECK(vertices > 1000);
+  CHECK(edges > 500);
+}
 
 TEST_CASE("no contact of tumbling blocks is missed, by vertices or by edges") {
   Index springs = 0, edges = 0;
