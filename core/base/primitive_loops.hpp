@@ -59,6 +59,17 @@ void set_all(Queue queue, Index count, T* items, T value) {
   for_each_item(queue, count, SetItem<T>{items, value});
 }
 
+template <class T>
+struct CopyItem {
+  const T* from;
+  T* into;
+  CDEM_HD void operator()(One item) const { into[item.i] = from[item.i]; }
+};
+template <class T>
+void copy_items(Queue queue, Index count, const T* from, T* into) {
+  for_each_item(queue, count, CopyItem<T>{from, into});
+}
+
 #if defined(CDEM_CPU)
 
 template <class Kernel>

@@ -18,6 +18,10 @@ namespace cdem {
 template <class T>
 void set_all(Queue queue, Index count, T* items, T value);
 
+/// Copy `count` items.
+template <class T>
+void copy_items(Queue queue, Index count, const T* from, T* into);
+
 /// Starts of rows: first[i] becomes the sum of the counts before row i, first[count] the sum of
 /// all, which is returned. Waits for that. `counts` may be first + 1.
 Index scan(Queue queue, Index count, const Index* counts, Index* first);

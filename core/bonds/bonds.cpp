@@ -29,14 +29,10 @@ PairDashpots dashpots(const Model& m, const State& s, const PairSet& p, PairStat
 template <Index count>
 void update_bonds(PairKind<ConformingBonds<count>>, const Model& m, State& s, Queue q,
                   const StepPlan& plan, const PairSet& p, PairState& ps) {
-  const Real indentation = count == 3 ? m.bond_indentation_triangle : m.bond_indentation_quad;
-  const ConformingBonds<count> bonds{.nodes = {s.nodes.motion.data()},
-                                     .pair_nodes = {p.nodes.data(), p.stride},
-                                     .pairs = pair_columns(m, p, ps),
-                                     .indentation = indentation,
-                                     .dt = s.dt_last,
-                                     .sampled = wants_energy(plan),
-                                     .corner_force = corner_forces(s, p)};
+  ConformingBonds<count> bonds = conforming_bonds<count>(m, s, p, ps);
+  bonds.dt = s.dt_last;
+  bonds.sampled = wants_energy(plan);
+  bonds.corner_force = corner_forces(s, p);
   const Blocks some = awake(plan, ps.awake);
   with_laws(interface_table(m), bonds,
             [&](const auto& kernel) { for_each_lane(q, p.count, some, kernel); });

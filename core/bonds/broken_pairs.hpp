@@ -6,6 +6,16 @@
 
 namespace cdem {
 
+/// Smaller length L of the two faces of pairs  [m].
+struct PairLengths {
+  const Index* faces;  // [pair][2]
+  const Real* face_length;
+
+  CDEM_HD Real at(Index pair) const {
+    return min_of(face_length[faces[2 * pair + 1]], face_length[faces[2 * pair]]);
+  }
+};
+
 /// Has a pair moved since it broke?
 struct HasJumped {
   InTable jump;  // [pair], of broken points  [m]
@@ -19,15 +29,12 @@ struct HasJumped {
 struct HasMovedFar {
   Real part;
   const Flag* status;
-  const Real* jump;    // [pair] of broken points  [m]
-  const Index* faces;  // [pair][2]
-  const Real* face_length;
+  const Real* jump;  // [pair] of broken points  [m]
+  PairLengths lengths;
 
   CDEM_HD bool operator()(One pair) const {
     const Real moved = jump[pair.i];
-    if (!is_live(PairStatus(status[pair.i])) || !(moved > 0)) return false;
-    const Real length = min_of(face_length[faces[2 * pair.i + 1]], face_length[faces[2 * pair.i]]);
-    return moved > part * length;
+    return is_live(PairStatus(status[pair.i])) && moved > 0 && moved > part * lengths.at(pair.i);
   }
 };
 

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 
-#include "core/bonds/transfer_to_contact.hpp"
 #include "core/bonds/views.hpp"
 #include "core/model/force_sets.hpp"
 #include "core/model/init_state.hpp"
@@ -25,14 +24,7 @@ struct Point {
 template <Index count, class Visit>
 void visit_points(PairKind<ConformingBonds<count>>, const Model& m, State& s, const PairSet& p,
                   PairState& ps, Visit&& visit) {
-  const auto bonds = on_host(ConformingBonds<count>{
-      .nodes = {s.nodes.motion.data()},
-      .pair_nodes = {p.nodes.data(), p.stride},
-      .pairs = pair_columns(m, p, ps),
-      .indentation = count == 3 ? m.bond_indentation_triangle : m.bond_indentation_quad,
-      .dt = 0,
-      .sampled = false,
-      .corner_force = {}});
+  const auto bonds = on_host(conforming_bonds<count>(m, s, p, ps));
   const auto faces = on_host(p.faces), interface = on_host(p.interface);
   // (1 - a) (1 - b) = 1/4 and 1/3: the mass matrix of the face equals that of the points at a and b
   const Real place_of_stress = 1 - 1.0 / (count == 3 ? 4 : 3) / (1 - bonds.indentation);
@@ -173,8 +165,9 @@ void bond_again(Model& m, State& s, const Flag* comes, const Flag* bonded) {
   constexpr Real near = 0.1;  // parts of the pair's length
   for_each_pair_set(m, s, [&](auto kind, const PairSet& p, PairState& ps) {
     std::vector<Flag> some = pairs_to_bond(m, s, p, comes);
+    const PairLengths lengths = on_host(pair_lengths(m, p));
     visit_points(kind, m, s, p, ps, [&](const Point& point) {
-      if (norm(point.jump) > near * pair_length(m, p, point.pair)) some[point.pair] = 0;
+      if (norm(point.jump) > near * lengths.at(point.pair)) some[point.pair] = 0;
     });
     const BeginHistory begin_history(m, p, ps);
     const auto rest = on_host(ps.rest), rise = on_host(ps.rise), bond = on_host(ps.bond);

@@ -1,17 +1,15 @@
 // release.cpp - see release.hpp.
 #include "core/bonds/release.hpp"
 
-#include <algorithm>
 #include <array>
 #include <utility>
-#include <vector>
 
 #include "core/base/primitives.hpp"
 #include "core/bonds/broken_pairs.hpp"
+#include "core/bonds/hinges.hpp"
 #include "core/bonds/transfer_to_contact.hpp"
 #include "core/bonds/views.hpp"
 #include "core/contact/narrow_phase/exposed_faces.hpp"
-#include "core/model/force_sets.hpp"
 
 namespace cdem {
 
@@ -25,8 +23,7 @@ HasMovedFar has_moved_by(const Model& m, const PairSet& p, const PairState& s, R
   return {.part = part,
           .status = s.status.data(),
           .jump = s.jump.data(),
-          .faces = p.faces.data(),
-          .face_length = m.face_length.data()};
+          .lengths = pair_lengths(m, p)};
 }
 
 bool has_moved_far(const Model& m, const PairSet& p, const PairState& s) {
@@ -42,10 +39,6 @@ Column<Index> pairs_where(const PairSet& p, const Kernel& kernel) {
   return list;
 }
 
-/// A pair that holds by some of its points and is this part of its length apart at another is a
-/// hinge: bodies between its faces touch them.
-constexpr Real hinge_part = 0.05;
-
 HoldsInPart holds_in_part(const PairSet& p, const PairState& s) {
   return {.status = s.status.data(),
           .bond = s.bond.data(),
@@ -54,92 +47,13 @@ HoldsInPart holds_in_part(const PairSet& p, const PairState& s) {
           .stride = p.point_stride};
 }
 
-/// A broken point of a pair that may be a hinge.
-struct BrokenPoint {
-  std::size_t place;  // in the point tables
-  Vec3<Real> jump;
-  BondSpring<Real> spring;
-  Real history[InterfaceLaws::most_state + 1];
-};
-
-/// If a pair has opened as a hinge, list it. Its broken points carry nothing any more; their small
-/// energy is lost to friction.
-void open_if_hinge(const Model& m, const PairSet& p, PairState& ps, Index i,
-                   const Frame<Real>& frame, std::vector<BrokenPoint>& broken,
-                   std::vector<Index>& hinges) {
-  Real widest = 0;
-  for (const BrokenPoint& point : broken) widest = std::max(widest, norm(point.jump));
-  if (!(widest > hinge_part * pair_length(m, p, i))) return;
-  const PairColumns pairs = on_host(pair_columns(m, p, ps));
-  const auto slip1 = on_host(ps.slip1), slip2 = on_host(ps.slip2);
-  const auto friction = on_host(ps.friction), stored = on_host(ps.stored);
-  for (BrokenPoint& point : broken) {
-    const JointInput<Real> in =
-        point.spring.input(frame, point.jump, {0.0, slip1[point.place], slip2[point.place]});
-    const JointAnswer<Real> joint = pairs.laws<InterfaceLaws>(One{i}).respond(in, point.history);
-    const Real held = point.spring.area * (joint.stored_n + joint.stored_s);
-    friction[i] += held;
-    stored[i] -= held;
-  }
-  on_host(ps.status)[i] = Flag(PairStatus::hinge);
-  hinges.push_back(i);
-}
-
-/// Returns the pairs that have opened as hinges.
-template <Index count>
-std::vector<Index> open_hinges(const Model& m, State& s, const PairSet& p, PairState& ps,
-                               Real indentation) {
-  std::vector<Index> hinges;
-  const std::vector<Index> some = fetch(pairs_where(p, holds_in_part(p, ps)));
-  const auto bonds = on_host(ConformingBonds<count>{.nodes = {s.nodes.motion.data()},
-                                                    .pair_nodes = {p.nodes.data(), p.stride},
-                                                    .pairs = pair_columns(m, p, ps),
-                                                    .indentation = indentation,
-                                                    .dt = 0,
-                                                    .sampled = false,
-                                                    .corner_force = {}});
-  const auto bond = on_host(ps.bond);
-  std::vector<BrokenPoint> broken;
-  for (const Index i : some) {
-    const auto place = [&](Index k) { return std::size_t(k) * p.point_stride + i; };
-    Vec3<Real> jump[count];
-    const Frame<Real> frame = bonds.gather_jumps(One{i}, jump);
-    broken.clear();
-    for (Index k = 0; k < count; ++k) {
-      if (bond[place(k)] > 0) continue;
-      broken.push_back({place(k), jump[k], bonds.spring(One{i}), {}});
-      bonds.pairs.template load_history<InterfaceLaws>(One{i}, k, count, broken.back().history);
-    }
-    open_if_hinge(m, p, ps, i, frame, broken, hinges);
-  }
-  return hinges;
-}
-
-std::vector<Index> open_overlap_hinges(const Model& m, State& s) {
-  std::vector<Index> hinges;
-  const PairSet& p = m.overlaps;
-  PairState& ps = s.overlaps;
-  const std::vector<Index> some = fetch(pairs_where(p, holds_in_part(p, ps)));
-  const OverlapBonds bonds = on_host(overlap_bonds(m, s));
-  const auto point_first = on_host(p.point_first), faces = on_host(p.faces);
-  const auto point_area = on_host(p.point_area);
-  const auto bond = on_host(ps.bond);
-  std::vector<BrokenPoint> broken;
-  for (const Index i : some) {
-    const Index first = point_first[i], count = point_first[i + 1] - first;
-    const Index a = faces[2 * i], b = faces[2 * i + 1];
-    const Frame<Real> frame = bonds.frame_of(a, b);
-    broken.clear();
-    for (Index c = first; c < first + count; ++c) {
-      if (bond[c] > 0) continue;
-      broken.push_back({std::size_t(c),
-                        bonds.jump_at(a, b, frame, c),
-                        bonds.pairs.spring(One{i}, point_area[c]),
-                        {}});
-      bonds.pairs.load_history<InterfaceLaws>(One{c}, 0, 1, broken.back().history);
-    }
-    open_if_hinge(m, p, ps, i, frame, broken, hinges);
-  }
+/// Open the pairs that have become hinges; returns them.
+template <class Points>
+Column<Index> open_hinges(const Model& m, const PairSet& p, PairState& ps, const Points& points) {
+  Column<Index> hinges = pairs_where(p, holds_in_part(p, ps));
+  keep_items({}, OpensAsHinge<Points>{points, pair_lengths(m, p)}, hinges);
+  for_each_item({}, Index(hinges.size()),
+                OpenHinge<Points>{hinges.data(), points, ps.status.data()});
   return hinges;
 }
 
@@ -147,12 +61,11 @@ std::vector<Index> open_overlap_hinges(const Model& m, State& s) {
 struct LetGo {
   const PairSet& set;
   PairState& state;
-  std::vector<Index> hinges;
-  Column<Index> released;
+  Column<Index> hinges, released;
 };
 
 /// The released pairs of a set with these new hinges.
-LetGo let_go(const Model& m, const PairSet& p, PairState& ps, std::vector<Index> hinges) {
+LetGo let_go(const Model& m, const PairSet& p, PairState& ps, Column<Index> hinges) {
   const HasMovedFar has_moved = has_moved_by(m, p, ps, release_part * m.rules.indentation);
   return {
       .set = p, .state = ps, .hinges = std::move(hinges), .released = pairs_where(p, has_moved)};
@@ -161,36 +74,10 @@ LetGo let_go(const Model& m, const PairSet& p, PairState& ps, std::vector<Index>
 void expose_faces(const Model& m, State& s, const std::array<LetGo, 3>& sets) {
   Column<Flag> open = open_faces(s);
   for (const LetGo& one : sets) {
-    Column<Index> hinges;
-    hinges.assign(one.hinges);
-    open_faces_of(one.set, hinges, open);
+    open_faces_of(one.set, one.hinges, open);
     open_faces_of(one.set, one.released, open);
   }
   renew_exposed(m, s, open);
-}
-
-/// Contacts take over what released pairs of a set carry.
-void hand_over(const Model& m, State& s, const LetGo& pairs) {
-  const PairSet& p = pairs.set;
-  PairState& ps = pairs.state;
-  const auto status = on_host(ps.status);
-  const auto stored = on_host(ps.stored), friction = on_host(ps.friction);
-  const auto jump = on_host(ps.jump), jump_at_break = on_host(ps.jump_at_break);
-  for (const Index i : fetch(pairs.released)) {
-    give_history(m, s, p, ps, i);
-    const bool hinge = PairStatus(status[i]) == PairStatus::hinge;
-    if (p.point_first.size() > 0 && !hinge) {
-      s.released_overlaps.resize(s.released_overlaps.size() + 1, i);
-    } else {
-      if (!hinge) stored[i] -= transfer_to_contact(m, s, p, ps, i);
-      friction[i] += stored[i];
-      stored[i] = 0;
-      clear_corner_rows(s, p, i);
-    }
-    status[i] = Flag(PairStatus::released);
-    jump[i] = 0;
-    jump_at_break[i] = -1;
-  }
 }
 
 }  // namespace
@@ -201,20 +88,23 @@ bool release_is_due(const Model& m, const State& s) {
 }
 
 bool release_bonds(const Model& m, State& s) {
+  const auto let_go_of = [&](const PairSet& p, PairState& ps, const auto& points) {
+    return let_go(m, p, ps, open_hinges(m, p, ps, points));
+  };
   const std::array<LetGo, 3> sets{
-      let_go(m, m.triangles, s.triangles,
-             open_hinges<3>(m, s, m.triangles, s.triangles, m.bond_indentation_triangle)),
-      let_go(m, m.quads, s.quads, open_hinges<4>(m, s, m.quads, s.quads, m.bond_indentation_quad)),
-      let_go(m, m.overlaps, s.overlaps, open_overlap_hinges(m, s))};
+      let_go_of(m.triangles, s.triangles,
+                BrokenOfConforming<3>{conforming_bonds<3>(m, s, m.triangles, s.triangles)}),
+      let_go_of(m.quads, s.quads,
+                BrokenOfConforming<4>{conforming_bonds<4>(m, s, m.quads, s.quads)}),
+      let_go_of(m.overlaps, s.overlaps, BrokenOfOverlaps{overlap_bonds(m, s)})};
   bool hinges = false, released = false;
   for (const LetGo& one : sets) {
-    hinges = hinges || !one.hinges.empty();
+    hinges = hinges || one.hinges.size() > 0;
     released = released || one.released.size() > 0;
   }
   if (hinges || released) expose_faces(m, s, sets);
-  for (const LetGo& one : sets)
-    for (const Index i : one.hinges) give_history(m, s, one.set, one.state, i);
-  for (const LetGo& one : sets) hand_over(m, s, one);
+  for (const LetGo& one : sets) give_history(m, s, one.set, one.state, one.hinges);
+  for (const LetGo& one : sets) transfer_to_contact(m, s, one.set, one.state, one.released);
   return released;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/bonds/bonded_pairs.hpp"
+#include "core/bonds/broken_pairs.hpp"
 #include "core/contact/geometry/views.hpp"
 #include "core/model/interface_table.hpp"
 #include "core/model/state.hpp"
@@ -31,6 +32,22 @@ inline PairColumns pair_columns(const Model& m, const PairSet& p, PairState& s) 
           .stored = inout(s.stored),
           .fracture = inout(s.fracture),
           .friction = inout(s.friction)};
+}
+
+inline PairLengths pair_lengths(const Model& m, const PairSet& p) {
+  return {p.faces.data(), m.face_length.data()};
+}
+
+/// Bonds of conforming pairs as they are, without the forces of a step.
+template <Index count>
+ConformingBonds<count> conforming_bonds(const Model& m, State& s, const PairSet& p, PairState& ps) {
+  return {.nodes = {s.nodes.motion.data()},
+          .pair_nodes = {p.nodes.data(), p.stride},
+          .pairs = pair_columns(m, p, ps),
+          .indentation = count == 3 ? m.bond_indentation_triangle : m.bond_indentation_quad,
+          .dt = 0,
+          .sampled = false,
+          .corner_force = {}};
 }
 
 inline OverlapBonds overlap_bonds(const Model& m, State& s) {

@@ -173,8 +173,8 @@ struct JointLaws {
 };
 
 /// How deep a joint of an interface is under a pressure [Pa]  [m].
-inline Real depth_under(const InterfaceTable& table, Index interface, Real pressure,
-                        const JointStiffness<Real>& k) {
+CDEM_HD inline Real depth_under(const InterfaceTable& table, Index interface, Real pressure,
+                                const JointStiffness<Real>& k) {
   if (!table.closes_by_curve(interface)) return pressure / k.n;
   return JointLaws<InterfaceLaws, Index>{table, interface}.depth(max_of(pressure, 0.0), k);
 }

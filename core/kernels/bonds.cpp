@@ -3,6 +3,11 @@
 #include "core/bonds/bond_dashpots.hpp"
 #include "core/bonds/bonded_overlaps.hpp"
 #include "core/bonds/broken_pairs.hpp"
+#include "core/bonds/conforming_transfer.hpp"
+#include "core/bonds/give_history.hpp"
+#include "core/bonds/hinges.hpp"
+#include "core/bonds/overlap_transfer.hpp"
+#include "core/bonds/release_pairs.hpp"
 
 namespace cdem {
 
@@ -12,6 +17,23 @@ template void select_items(Queue, Index, const HasMovedFar&, Column<Index>&);
 template void select_items(Queue, Index, const HoldsInPart&, Column<Index>&);
 template void select_items(Queue, Index, const IsBonded&, Column<Index>&);
 template void for_each_item(Queue, Index, const WriteBondedKeys&);
+template void keep_items(Queue, const OpensAsHinge<BrokenOfConforming<3>>&, Column<Index>&);
+template void keep_items(Queue, const OpensAsHinge<BrokenOfConforming<4>>&, Column<Index>&);
+template void keep_items(Queue, const OpensAsHinge<BrokenOfOverlaps>&, Column<Index>&);
+template void for_each_item(Queue, Index, const OpenHinge<BrokenOfConforming<3>>&);
+template void for_each_item(Queue, Index, const OpenHinge<BrokenOfConforming<4>>&);
+template void for_each_item(Queue, Index, const OpenHinge<BrokenOfOverlaps>&);
+template void list_rows(Queue, Index, Index, Index, const PairSides&, Column<Index>&,
+                        Column<Index>&);
+template void for_each_item(Queue, Index, const GiveHistory&);
+template void for_each_item(Queue, Index, const TransferToContacts&);
+template void list_items(Queue, Index, const ListBonded&, Column<Index>&);
+template void for_each_item(Queue, Index, const ReleasePairs&);
+template void list_items(Queue, Index, const ListLifted&, Column<Index>&);
+template void for_each_item(Queue, Index, const AwaitSprings&);
+template void list_items(Queue, Index, const ListAwaitedEdges&, Column<EdgeContact>&);
+template void for_each_item(Queue, Index, const CountNewStates&);
+template void for_each_item(Queue, Index, const GiveToSuccessors&);
 template void for_each_lane(Queue, Index, Blocks, const BondDashpots<3>&);
 template void for_each_lane(Queue, Index, Blocks, const BondDashpots<4>&);
 template void for_each_item(Queue, Index, Blocks, const OverlapDashpots&);

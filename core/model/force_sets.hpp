@@ -111,15 +111,6 @@ auto corner_rows_of(const Given& given) {
   };
 }
 
-/// A pair that is released bears nothing. Kernels leave its rows as they are, or clear them where
-/// others of a pack are live: so that the state does not depend on the width of packs.
-inline void clear_corner_rows(State& s, const PairSet& p, Index pair) {
-  const auto force = on_host(s.corner_force);
-  corner_rows_of(p)(pair, [&](Index row) {
-    for (Index k = 0; k < 4; ++k) force[4 * std::size_t(row) + k] = 0;
-  });
-}
-
 /// Elements of all sets together.
 inline Index element_count(const Model& m, const State& s) {
   Index count = 0;

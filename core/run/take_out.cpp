@@ -100,9 +100,12 @@ void unload(State& s, const PairSet& p, PairState& ps, const std::vector<Index>&
   const auto status = on_host(ps.status);
   const auto stored = on_host(ps.stored), jump = on_host(ps.jump);
   const auto jump_at_break = on_host(ps.jump_at_break);
+  const auto force = on_host(s.corner_force);
   for (const Index i : which) {
     status[i] = Flag(PairStatus::released);
-    clear_corner_rows(s, p, i);
+    corner_rows_of(p)(i, [&](Index row) {  // kernels leave them as they are, see BondEnds
+      for (Index k = 0; k < 4; ++k) force[4 * std::size_t(row) + k] = 0;
+    });
     stored[i] = 0;
     jump[i] = 0;
     jump_at_break[i] = -1;

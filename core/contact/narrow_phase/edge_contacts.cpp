@@ -34,8 +34,8 @@ void make_room_for_edges(State& s) {
   e.seen.renew(contacts);
 }
 
-void add_edges(State& s, const Column<Index>& contacts, const ContactState& as) {
-  const Index added = Index(contacts.size() / 4);
+void add_edges(State& s, const Column<EdgeContact>& contacts, const ContactState& as) {
+  const Index added = Index(contacts.size());
   if (added == 0) return;
   s.search.inner.held_known = false;
   EdgeState& e = s.edges;

@@ -11,9 +11,8 @@ void begin_edges(State& state);
 /// After it: room for the contacts found.
 void make_room_for_edges(State& state);
 
-/// Add contacts, rows of 4 of EdgeContact, to the list in this state; contacts already listed are
-/// unchanged.
-void add_edges(State& state, const Column<Index>& contacts, const ContactState& as);
+/// Add contacts to the list in this state; contacts already listed are unchanged.
+void add_edges(State& state, const Column<EdgeContact>& contacts, const ContactState& as);
 
 /// Bring the list to the new places of exposed faces, see PairPlaces. Contacts with faces that have
 /// left end.

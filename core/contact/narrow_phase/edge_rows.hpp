@@ -66,27 +66,26 @@ struct MoveKeptEdges {
 
 /// Row of a new contact: its mother face.
 struct MotherOfEdge {
-  const Index* contact;  // rows of 4
+  const EdgeContact* contact;
   template <class Act>
   CDEM_HD void visit(One c, const Act& act) const {
-    act(EdgeContact::at(contact, c.i).mother / 4, c.i);
+    act(contact[c.i].mother / 4, c.i);
   }
 };
 /// Contacts that are new to the list of a mother face, each once; item: exposed face.
 struct AddedEdges {
   EdgeRowsBefore rows;
-  const Index* contact;        // new ones: rows of 4
+  const EdgeContact* contact;  // new ones
   const Index *first, *added;  // those of a mother face
 
   template <class Act>
   CDEM_HD void visit(Index x, const Act& act) const {
     for (Index r = first[x]; r < first[x + 1]; ++r) {
-      const EdgeContact one = EdgeContact::at(contact, added[r]);
+      const EdgeContact one = contact[added[r]];
       bool has = false;
       for (Index c = rows.first[x]; c < rows.first[x + 1]; ++c)
         has = has || is_same(one, EdgeContact::at(rows.contact, c));
-      for (Index q = first[x]; q < r; ++q)
-        has = has || is_same(one, EdgeContact::at(contact, added[q]));
+      for (Index q = first[x]; q < r; ++q) has = has || is_same(one, contact[added[q]]);
       if (!has) act(one);
     }
   }

@@ -49,9 +49,8 @@ TEST_CASE("contacts are added to their faces in the state given; those there sta
   ContactState awaited = ContactState::none();
   awaited.stress_free_gap = 1e-3;
   s.search.inner.held_known = true;
-  const Index added[] = {9, 0, 4, -1, 5, 0, 7, -1, 2, 1, 4, -1, 9, 0, 4, -1};
-  Column<Index> contacts;
-  contacts.assign(added, 16);
+  Column<EdgeContact> contacts;
+  contacts.assign({{9, 0, 4, -1}, {5, 0, 7, -1}, {2, 1, 4, -1}, {9, 0, 4, -1}});
   add_edges(s, contacts, awaited);
   const Index first[] = {0, 1, 3, 4};
   for (Index x = 0; x < 4; ++x) CHECK(on_host(s.edges.first)[x] == first[x]);
