@@ -440,8 +440,13 @@ def _pairs(t: Topology, place: NDArray) -> None:
     sides = (at[a] >= 0).sum(axis=1)[:, None]
     mate = np.take_along_axis(at[b], (shift[:, None] - k) % sides, axis=1)
     facing = ((mate == at[a]) | (k >= sides)).all(axis=1)
-    t.pair_faces = pairs[facing].astype(np.int32)
-    t.pair_shift = shift[facing].astype(np.int32)
+    pairs, shift = pairs[facing], shift[facing]
+    if np.bincount(pairs.ravel(), minlength=1).max() > 1:  # bodies inside one another
+        _, first = np.unique(pairs, return_index=True)
+        alone = np.isin(np.arange(pairs.size), first).reshape(pairs.shape).all(axis=1)
+        pairs, shift = pairs[alone], shift[alone]
+    t.pair_faces = pairs.astype(np.int32)
+    t.pair_shift = shift.astype(np.int32)
 
 
 def _surfaces(t: Topology, mesh: Mesh) -> None:

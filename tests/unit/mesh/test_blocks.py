@@ -65,6 +65,21 @@ def test_boxes_side_by_side_are_mated_by_place():
     assert len(t.pair_faces) == 1
 
 
+def test_a_face_has_one_mate_where_bodies_lie_inside_one_another():
+    rng = np.random.default_rng(1)
+    for _ in range(50):
+        face = rng.random((3, 3))
+        normal = np.cross(face[1] - face[0], face[2] - face[0])
+        pieces = []
+        for side in (1, -1, 1):  # two on one side
+            apex = face.mean(0) + side * normal + np.cross(normal, rng.normal(size=3))
+            points = np.vstack([face if side > 0 else face[::-1], apex])
+            cells = {"tet4": np.array([[0, 1, 2, 3]])}
+            pieces.append(mesh.Mesh(points, cells, {"tet4": np.zeros(1, int)}, ["a"]))
+        t = build_topology(mesh.merge(pieces), {})
+        assert len(t.pair_faces) == 1
+
+
 def test_inverted_element_is_an_error():
     bad = one_element("tet4")
     bad.cells["tet4"] = bad.cells["tet4"][:, [1, 0, 2, 3]]
