@@ -32,7 +32,9 @@ void update_forces(const Model& m, State& s, Queue q, const StepPlan& plan) {
 void step(const Model& m, State& s, Queue q, const StepPlan& plan) {
   update_forces(m, s, q, plan);
   advance_nodes(m, s, q, plan);  // nodes/
-  advance_clock(m, s);           // nodes/time_step
+  advance_clock(s);              // nodes/time_step
+  ask_what_is_due(m, s);         // contact/pair_list
+  renew_step_if_due(m, s);       // nodes/time_step
 }
 
 }  // namespace cdem

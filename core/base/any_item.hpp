@@ -6,8 +6,12 @@
 
 namespace cdem {
 
-/// Does `kernel(item)` hold for any of `count` items? Waits for the answer, which is one word on
-/// its way to the host. Instantiated in core/kernels.
+/// Raise a flag, which is of an Answer, if `kernel(item)` holds for any of `count` items. A kernel
+/// of packs may hold for all lanes where it holds for one. Instantiated in core/kernels.
+template <class Kernel>
+void raise_if_any(Queue queue, Index count, const Kernel& kernel, Flag* flag);
+
+/// Does it hold for any? Waits for the answer.
 template <class Kernel>
 bool any_item(Queue queue, Index count, const Kernel& kernel);
 

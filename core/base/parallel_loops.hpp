@@ -7,6 +7,7 @@
 #include <type_traits>
 #include <typeinfo>
 
+#include "core/base/answer.hpp"
 #include "core/base/any_item.hpp"
 #include "core/base/emulated.hpp"
 #include "core/base/parallel.hpp"
@@ -148,6 +149,10 @@ bool any_item(Queue, Index count, const Kernel& kernel) {
     if (any_of(kernel(One{i}))) found = 1;
   return found != 0;
 }
+template <class Kernel>
+void raise_if_any(Queue queue, Index count, const Kernel& kernel, Flag* flag) {
+  if (any_item(queue, count, kernel)) *flag = 1;
+}
 
 /// Run a straight-line kernel for every item: whole lanes, then the remainder one by one.
 template <class Kernel>
@@ -255,13 +260,16 @@ struct SetWhere {
 };
 
 template <class Kernel>
+void raise_if_any(Queue queue, Index count, const Kernel& kernel, Flag* flag) {
+  if (count > 0) for_each_item(queue, count, SetWhere<Kernel>{kernel, flag});
+}
+template <class Kernel>
 bool any_item(Queue queue, Index count, const Kernel& kernel) {
-  static thread_local Flag* const found = static_cast<Flag*>(allocate_answer(sizeof(Flag)));
-  const Transfer transfer;
-  *found = 0;
-  for_each_item(queue, count, SetWhere<Kernel>{kernel, found});
-  finish(queue);
-  return *found != 0;
+  if (count == 0) return false;
+  Answer<Flag>& found = answer_of_thread<Flag>();
+  found.set(queue, 0);
+  raise_if_any(queue, count, kernel, found.data());
+  return found.read(queue) != 0;
 }
 
 #endif

@@ -73,7 +73,7 @@ void copy_items(Queue queue, Index count, const T* from, T* into) {
 #if defined(CDEM_CPU)
 
 template <class Kernel>
-Most most(Queue, Index count, const Kernel& kernel) {
+void find_most(Queue, Index count, const Kernel& kernel, Answer<Most>& answer) {
   Most all;
   on_threads(count >= worth_threads, [&](Thread thread) {
     Most own;
@@ -82,7 +82,7 @@ Most most(Queue, Index count, const Kernel& kernel) {
 #pragma omp critical(cdem_most)
     all.meet(own.value, own.item);
   });
-  return all;
+  *answer.data() = all;
 }
 
 template <class Kernel>
@@ -179,7 +179,7 @@ void keep_items(Queue, const Kernel& kernel, Column<Item>& items) {
 #else
 
 /// The same of numbers.
-Most most_of(Queue queue, Index count, const Real* values);
+void find_most_of(Queue queue, Index count, const Real* values, Most* answer);
 
 template <class Kernel>
 struct SetValue {
@@ -188,11 +188,11 @@ struct SetValue {
   CDEM_HD void operator()(One item) const { values[item.i] = kernel(item); }
 };
 template <class Kernel>
-Most most(Queue queue, Index count, const Kernel& kernel) {
-  if (count == 0) return {};
+void find_most(Queue queue, Index count, const Kernel& kernel, Answer<Most>& answer) {
+  if (count == 0) return answer.set(queue, {});
   Real* const values = scratch<Real>(count);
   for_each_item(queue, count, SetValue<Kernel>{kernel, values});
-  return most_of(queue, count, values);
+  find_most_of(queue, count, values, answer.data());
 }
 
 #if defined(CDEM_CUDA)
@@ -278,6 +278,7 @@ struct PutCounted {
 };
 template <class Kernel>
 void select_items(Queue queue, Index count, const Kernel& kernel, Column<Index>& list) {
+  if (count == 0) return list.renew(0);
   Index* const first = scratch<Index>(std::size_t(count) + 1);
   for_each_item(queue, count, CountItem<Kernel>{kernel, first + 1});
   list.renew(scan(queue, count, first + 1, first));
@@ -306,6 +307,7 @@ struct PutVisited {
 };
 template <class Item, class Kernel>
 void list_items(Queue queue, Index rows, const Kernel& kernel, Column<Item>& items) {
+  if (rows == 0) return items.renew(0);
   Index* const first = scratch<Index>(std::size_t(rows) + 1);
   for_each_item(queue, rows, CountVisited<Item, Kernel>{kernel, first + 1});
   items.renew(scan(queue, rows, first + 1, first));
@@ -331,6 +333,7 @@ struct PutKept {
 template <class Item, class Kernel>
 void keep_items(Queue queue, const Kernel& kernel, Column<Item>& items) {
   const Index count = Index(items.size());
+  if (count == 0) return;
   Index* const first = scratch<Index>(std::size_t(count) + 1);
   for_each_item(queue, count, CountKept<Item, Kernel>{kernel, items.data(), first + 1});
   Column<Item> kept;
@@ -340,6 +343,13 @@ void keep_items(Queue queue, const Kernel& kernel, Column<Item>& items) {
 }
 
 #endif
+
+template <class Kernel>
+Most most(Queue queue, Index count, const Kernel& kernel) {
+  Answer<Most>& answer = answer_of_thread<Most>();
+  find_most(queue, count, kernel, answer);
+  return answer.read(queue);
+}
 
 /// Count the numbers of every row; each number learns its place there, in any order.
 template <class Kernel>
@@ -393,20 +403,40 @@ struct SortRow {
   }
 };
 
+/// Count the numbers of rows in first + 1; returns the place of every number in its row.
 template <class Kernel>
-void list_rows(Queue queue, Index items, Index numbers, Index rows, const Kernel& kernel,
-               Column<Index>& first, Column<Index>& list) {
+Index* count_in_rows(Queue queue, Index items, Index numbers, Index rows, const Kernel& kernel,
+                     Column<Index>& first) {
   first.renew(std::size_t(rows) + 1);
   Index *const starts = first.data(), *const place = scratch<Index>(numbers);
   set_all(queue, rows + 1, starts, Index(0));
   for_each_item(queue, items,
                 CountInRows<Kernel>{
                     .kernel = kernel, .count = starts + 1, .place = place, .alone = runs_alone()});
-  list.renew(scan(queue, rows, starts + 1, starts));
-  for_each_item(
-      queue, items,
-      PutInRows<Kernel>{.kernel = kernel, .place = place, .first = starts, .list = list.data()});
-  for_each_item(queue, rows, SortRow<Kernel>{kernel, starts, list.data()});
+  return place;
+}
+template <class Kernel>
+void put_in_rows(Queue queue, Index items, Index rows, const Kernel& kernel, const Index* place,
+                 const Index* first, Index* list) {
+  for_each_item(queue, items,
+                PutInRows<Kernel>{.kernel = kernel, .place = place, .first = first, .list = list});
+  for_each_item(queue, rows, SortRow<Kernel>{kernel, first, list});
+}
+
+template <class Kernel>
+void list_rows(Queue queue, Index items, Index numbers, Index rows, const Kernel& kernel,
+               Column<Index>& first, Column<Index>& list) {
+  const Index* const place = count_in_rows(queue, items, numbers, rows, kernel, first);
+  list.renew(scan(queue, rows, first.data() + 1, first.data()));
+  put_in_rows(queue, items, rows, kernel, place, first.data(), list.data());
+}
+template <class Kernel>
+void list_rows_in_room(Queue queue, Index items, Index numbers, Index rows, const Kernel& kernel,
+                       Column<Index>& first, Column<Index>& list) {
+  const Index* const place = count_in_rows(queue, items, numbers, rows, kernel, first);
+  add_up(queue, rows, first.data() + 1, first.data());
+  list.renew(numbers);
+  put_in_rows(queue, items, rows, kernel, place, first.data(), list.data());
 }
 
 }  // namespace cdem

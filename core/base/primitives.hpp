@@ -8,6 +8,7 @@
 
 #include <cstdint>
 
+#include "core/base/answer.hpp"
 #include "core/base/any_item.hpp"
 #include "core/base/column.hpp"
 #include "core/base/parallel.hpp"
@@ -23,7 +24,11 @@ template <class T>
 void copy_items(Queue queue, Index count, const T* from, T* into);
 
 /// Starts of rows: first[i] becomes the sum of the counts before row i, first[count] the sum of
-/// all, which is returned. Waits for that. `counts` may be first + 1.
+/// all. `counts` may be first + 1.
+void add_up(Queue queue, Index count, const Index* counts, Index* first);
+/// The same, with the sum of all where the host can read it.
+void add_up(Queue queue, Index count, const Index* counts, Index* first, Answer<Index>& sum);
+/// The same. Waits for the sum, which is returned.
 Index scan(Queue queue, Index count, const Index* counts, Index* first);
 
 /// The largest of some numbers, and the first item that has it.
@@ -38,7 +43,10 @@ struct Most {
   }
 };
 
-/// The largest `kernel(item)`; NaN does not count. Waits for the answer.
+/// Find the largest `kernel(item)`, where kernels can read it; NaN does not count.
+template <class Kernel>
+void find_most(Queue queue, Index count, const Kernel& kernel, Answer<Most>& answer);
+/// The same. Waits for the answer.
 template <class Kernel>
 Most most(Queue queue, Index count, const Kernel& kernel);
 
@@ -80,5 +88,10 @@ void sort_pairs(Queue queue, Index count, std::uint64_t* keys, Index* values);
 template <class Kernel>
 void list_rows(Queue queue, Index items, Index numbers, Index rows, const Kernel& kernel,
                Column<Index>& first, Column<Index>& list);
+/// The same without a wait: the list has room for all `numbers`, of which the rows need not have
+/// each.
+template <class Kernel>
+void list_rows_in_room(Queue queue, Index items, Index numbers, Index rows, const Kernel& kernel,
+                       Column<Index>& first, Column<Index>& list);
 
 }  // namespace cdem

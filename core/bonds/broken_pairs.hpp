@@ -16,25 +16,28 @@ struct PairLengths {
   }
 };
 
-/// Has a pair moved since it broke?
-struct HasJumped {
-  InTable jump;  // [pair], of broken points  [m]
-  template <class I>
-  CDEM_HD auto operator()(I item) const {
-    return jump.at(0, item) > Number<I>(0.0);
-  }
-};
-
-/// Has a broken pair moved by more than a part of its length?
+/// Has a broken pair moved by more than a part of its length? Of a pack: has any?
 struct HasMovedFar {
   Real part;
   const Flag* status;
-  const Real* jump;  // [pair] of broken points  [m]
+  InTable jump;  // [pair] of broken points  [m]
   PairLengths lengths;
 
-  CDEM_HD bool operator()(One pair) const {
-    const Real moved = jump[pair.i];
-    return is_live(PairStatus(status[pair.i])) && moved > 0 && moved > part * lengths.at(pair.i);
+  template <class I>
+  CDEM_HD auto operator()(I item) const {
+    using T = Number<I>;
+    const T moved = jump.at(0, item);
+    auto any = moved > T(0.0);
+    if (!any_of(any)) return any;
+    bool far = false;
+    for_lanes(item,
+              [&](Index lane, Index pair) { far = far || is_far(pair, of_lane(moved, lane)); });
+    return T(far ? 1.0 : 0.0) > T(0.5);
+  }
+
+ private:
+  CDEM_HD bool is_far(Index pair, Real moved) const {
+    return is_live(PairStatus(status[pair])) && moved > 0 && moved > part * lengths.at(pair);
   }
 };
 

@@ -65,9 +65,10 @@ struct BrokenOfOverlaps {
   }
 };
 
-/// Has a pair that holds by some of its points opened as a hinge? See keep_items.
+/// Has a pair that holds by some of its points opened as a hinge? See select_items.
 template <class Points>
 struct OpensAsHinge {
+  HoldsInPart holds_in_part;
   Points points;
   PairLengths lengths;
 
@@ -75,11 +76,11 @@ struct OpensAsHinge {
   /// faces touch them.
   static constexpr Real part = 0.05;
 
-  CDEM_HD bool operator()(Index pair) const {
+  CDEM_HD bool operator()(One pair) const {
+    if (!holds_in_part(pair)) return false;
     Real widest = 0;
-    points.each(One{pair},
-                [&](const BrokenPoint& point) { widest = max_of(widest, norm(point.jump)); });
-    return widest > part * lengths.at(pair);
+    points.each(pair, [&](const BrokenPoint& point) { widest = max_of(widest, norm(point.jump)); });
+    return widest > part * lengths.at(pair.i);
   }
 };
 

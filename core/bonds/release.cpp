@@ -10,6 +10,7 @@
 #include "core/bonds/transfer_to_contact.hpp"
 #include "core/bonds/views.hpp"
 #include "core/contact/narrow_phase/exposed_faces.hpp"
+#include "core/model/force_sets.hpp"
 
 namespace cdem {
 
@@ -22,13 +23,8 @@ constexpr Real release_part = 0.1;
 HasMovedFar has_moved_by(const Model& m, const PairSet& p, const PairState& s, Real part) {
   return {.part = part,
           .status = s.status.data(),
-          .jump = s.jump.data(),
+          .jump = {s.jump.data(), p.stride},
           .lengths = pair_lengths(m, p)};
-}
-
-bool has_moved_far(const Model& m, const PairSet& p, const PairState& s) {
-  return any_item({}, p.count, HasJumped{{s.jump.data(), 0}}) &&
-         any_item({}, p.count, has_moved_by(m, p, s, m.rules.indentation));
 }
 
 /// The pairs for which a kernel holds, ascending.
@@ -50,8 +46,8 @@ HoldsInPart holds_in_part(const PairSet& p, const PairState& s) {
 /// Open the pairs that have become hinges; returns them.
 template <class Points>
 Column<Index> open_hinges(const Model& m, const PairSet& p, PairState& ps, const Points& points) {
-  Column<Index> hinges = pairs_where(p, holds_in_part(p, ps));
-  keep_items({}, OpensAsHinge<Points>{points, pair_lengths(m, p)}, hinges);
+  const OpensAsHinge<Points> opens{holds_in_part(p, ps), points, pair_lengths(m, p)};
+  Column<Index> hinges = pairs_where(p, opens);
   for_each_item({}, Index(hinges.size()),
                 OpenHinge<Points>{hinges.data(), points, ps.status.data()});
   return hinges;
@@ -82,9 +78,10 @@ void expose_faces(const Model& m, State& s, const std::array<LetGo, 3>& sets) {
 
 }  // namespace
 
-bool release_is_due(const Model& m, const State& s) {
-  return has_moved_far(m, m.triangles, s.triangles) || has_moved_far(m, m.quads, s.quads) ||
-         has_moved_far(m, m.overlaps, s.overlaps);
+void ask_if_release_is_due(const Model& m, const State& s, Flag* answer) {
+  for_each_pair_set(m, s, [&](auto, const PairSet& p, const PairState& ps) {
+    raise_if_any({}, p.count, has_moved_by(m, p, ps, m.rules.indentation), answer);
+  });
 }
 
 bool release_bonds(const Model& m, State& s) {

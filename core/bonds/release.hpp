@@ -6,8 +6,9 @@
 
 namespace cdem {
 
-/// Has a broken pair moved so far that its faces must be released at once?
-bool release_is_due(const Model& model, const State& state);
+/// Raise a flag of an Answer if a broken pair has moved so far that its faces must be released at
+/// once.
+void ask_if_release_is_due(const Model& model, const State& state, Flag* answer);
 
 /// Release broken pairs that have moved apart or along each other, and open the faces of hinges.
 /// Returns whether any pair was released.

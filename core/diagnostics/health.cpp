@@ -13,15 +13,17 @@ Report check_health(const Model& m, const State& s) {
   const SquaredSpeed squared_speed{.motion = s.nodes.motion.data(),
                                    .relax_mass = scaled ? s.nodes.relax_mass.data() : nullptr,
                                    .mass = m.mass.data()};
-  const Most fastest = most({}, m.node_count, squared_speed);
+  Answer<Most> speed, loss;  // asked together
+  find_most({}, m.node_count, squared_speed, speed);
+  find_most({}, Index(s.search.exposed_face.size()),
+            LostContact{s.edges.lost.data(), s.springs.lost.data()}, loss);
+  const Most fastest = speed.read({}), lost = loss.read({});
   if (std::isinf(fastest.value) && fastest.item >= 0) {
     const Transfer transfer;  // of one node
     return {Outcome::not_finite, fastest.item, on_host(squared_speed).of(fastest.item)};
   }
   if (m.speed_limit > 0 && std::sqrt(fastest.value) > m.speed_limit)
     return {Outcome::too_fast, fastest.item, std::sqrt(fastest.value)};
-  const Most lost = most({}, Index(s.search.exposed_face.size()),
-                         LostContact{s.edges.lost.data(), s.springs.lost.data()});
   if (lost.value > 0) return {Outcome::lost_contact, lost.item, 0};
   return {};
 }

@@ -54,7 +54,6 @@ void average(const Model& m, State& s, Queue q, Column<Real>& at_nodes) {
 void begin(const Model& m, State& s, Queue q) {
   s.nodal.start.resize(m.tet4.stride);
   find_dilatation(m, s, q);
-  finish(q);
   s.nodal.start.assign(s.nodal.own.data(), m.tet4.stride);
   s.nodal.after.resize(m.node_count);
 }

@@ -11,15 +11,15 @@
 
 namespace cdem {
 
-template bool any_item(Queue, Index, const HasJumped&);
-template bool any_item(Queue, Index, const HasMovedFar&);
+template void raise_if_any(Queue, Index, const HasMovedFar&, Flag*);
 template void select_items(Queue, Index, const HasMovedFar&, Column<Index>&);
-template void select_items(Queue, Index, const HoldsInPart&, Column<Index>&);
 template void select_items(Queue, Index, const IsBonded&, Column<Index>&);
 template void for_each_item(Queue, Index, const WriteBondedKeys&);
-template void keep_items(Queue, const OpensAsHinge<BrokenOfConforming<3>>&, Column<Index>&);
-template void keep_items(Queue, const OpensAsHinge<BrokenOfConforming<4>>&, Column<Index>&);
-template void keep_items(Queue, const OpensAsHinge<BrokenOfOverlaps>&, Column<Index>&);
+template void select_items(Queue, Index, const OpensAsHinge<BrokenOfConforming<3>>&,
+                           Column<Index>&);
+template void select_items(Queue, Index, const OpensAsHinge<BrokenOfConforming<4>>&,
+                           Column<Index>&);
+template void select_items(Queue, Index, const OpensAsHinge<BrokenOfOverlaps>&, Column<Index>&);
 template void for_each_item(Queue, Index, const OpenHinge<BrokenOfConforming<3>>&);
 template void for_each_item(Queue, Index, const OpenHinge<BrokenOfConforming<4>>&);
 template void for_each_item(Queue, Index, const OpenHinge<BrokenOfOverlaps>&);

@@ -24,8 +24,8 @@ template void for_each_lane(Queue, Index,
 template void for_each_lane(Queue, Index,
                             const WithLaws<UpdateEdgeForces<HystereticUnloading>, InterfaceLaws>&);
 template void for_each_item(Queue, Index, const MergeSideHistories&);
-template void list_rows(Queue, Index, Index, Index, const ContactsOf&, Column<Index>&,
-                        Column<Index>&);
+template void list_rows_in_room(Queue, Index, Index, Index, const ContactsOf&, Column<Index>&,
+                                Column<Index>&);
 template void for_each_item(Queue, Index, const SumTouching&);
 template void for_each_item(Queue, Index, const ShareAreas&);
 template void for_each_item(Queue, Index, const AccumulateFaceForces&);

@@ -7,8 +7,8 @@
 
 namespace cdem {
 
-template Most most(Queue, Index, const SquaredSpeed&);
-template Most most(Queue, Index, const LostContact&);
+template void find_most(Queue, Index, const SquaredSpeed&, Answer<Most>&);
+template void find_most(Queue, Index, const LostContact&, Answer<Most>&);
 template Most most(Queue, Index, const Farthest&);
 template Real exact_sum(Queue, Index, const NodeStiffness&);
 template Real exact_sum(Queue, Index, const AppliedForce&);

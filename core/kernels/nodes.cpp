@@ -18,7 +18,8 @@ template void for_each_item(Queue, Index, Blocks, const AdvanceNodes<Dashpots>&)
 template void for_each_item(Queue, Index, const SampleDashpots&);
 template void for_each_item(Queue, Index, const NodeMomentum&);
 template void for_each_item(Queue, Index, const KeepPeak&);
-template Most most(Queue, Index, const NodeFrequency&);
+template void find_most(Queue, Index, const NodeFrequency&, Answer<Most>&);
+template void for_each_item(Queue, Index, const DescribeHighest&);
 template void list_rows(Queue, Index, Index, Index, const ContactCorners&, Column<Index>&,
                         Column<Index>&);
 template void for_each_item(Queue, Index, const SampleNodes&);

@@ -40,7 +40,7 @@ template void for_each_item(Queue, Index, const MarkListedFaces&);
 template void list_rows(Queue, Index, Index, Index, const RowOfActingFace&, Column<Index>&,
                         Column<Index>&);
 template void for_each_item(Queue, Index, const WriteActingFaces&);
-template bool any_item(Queue, Index, const ExceedsSkin&);
+template void raise_if_any(Queue, Index, const ExceedsSkin&, Flag*);
 template void for_each_item(Queue, Index, const PredictInner&);
 template void for_each_lane(Queue, Index, const MarkNearFaces&);
 template void for_each_selected(Queue, Index, const MarkInnerFaces&);

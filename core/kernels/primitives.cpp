@@ -16,6 +16,21 @@ template void copy_items(Queue, Index, const Real*, Real*);
 template Real exact_sum(Queue, Index, const EachNumber<>&);
 template Real exact_sum(Queue, Index, const EachNumber<4>&);
 
+namespace {
+
+struct TellSum {
+  const Index* sum;
+  Index* answer;
+  CDEM_HD void operator()(One) const { *answer = *sum; }
+};
+
+}  // namespace
+
+void add_up(Queue queue, Index count, const Index* counts, Index* first, Answer<Index>& sum) {
+  add_up(queue, count, counts, first);
+  for_each_item(queue, 1, TellSum{first + count, sum.data()});
+}
+
 Real column_sum(Queue queue, const Column<Real>& column) {
   return exact_sum(queue, Index(column.size()), EachNumber<>{column.data()});
 }
@@ -53,27 +68,37 @@ struct Larger {
     return most.item;
   }
 };
+struct TellMost {
+  const Real* values;
+  const Index* item;
+  Most* answer;
+  CDEM_HD void operator()(One) const {
+    Most most;
+    if (*item >= 0) most.meet(values[*item], *item);
+    *answer = most;
+  }
+};
 
 }  // namespace
 
-Index scan(Queue queue, Index count, const Index* counts, Index* first) {
+void add_up(Queue queue, Index count, const Index* counts, Index* first) {
   check(cudaMemsetAsync(first, 0, sizeof *first, stream_of(queue)));
   with_memory([&](void* memory, std::size_t& bytes) {
     return cub::DeviceScan::InclusiveSum(memory, bytes, counts, first + 1, count, stream_of(queue));
   });
+}
+Index scan(Queue queue, Index count, const Index* counts, Index* first) {
+  add_up(queue, count, counts, first);
   return fetch_word(queue, first + count);
 }
 
-Most most_of(Queue queue, Index count, const Real* values) {
+void find_most_of(Queue queue, Index count, const Real* values, Most* answer) {
   Index* const item = scratch<Index>(1);
   with_memory([&](void* memory, std::size_t& bytes) {
     return cub::DeviceReduce::Reduce(memory, bytes, thrust::counting_iterator<Index>(0), item,
                                      count, Larger{values}, Index(-1), stream_of(queue));
   });
-  Most most;
-  most.item = fetch_word(queue, item);
-  if (most.item >= 0) most.value = fetch_word(queue, values + most.item);
-  return most;
+  for_each_item(queue, 1, TellMost{values, item, answer});
 }
 
 std::int64_t* zeroed_words(Queue queue) {
@@ -148,15 +173,16 @@ T fetch_word(const T* word) {
 
 }  // namespace
 
-Index scan(Queue queue, Index count, const Index* counts, Index* first) {
+void add_up(Queue queue, Index count, const Index* counts, Index* first) {
   for_each_item(queue, 1, Scan{count, counts, first});
+}
+Index scan(Queue queue, Index count, const Index* counts, Index* first) {
+  add_up(queue, count, counts, first);
   return fetch_word(first + count);
 }
 
-Most most_of(Queue queue, Index count, const Real* values) {
-  Most* const most = scratch<Most>(1);
-  for_each_item(queue, 1, FindMost{count, values, most});
-  return fetch_word(most);
+void find_most_of(Queue queue, Index count, const Real* values, Most* answer) {
+  for_each_item(queue, 1, FindMost{count, values, answer});
 }
 
 Real exact_sum_of(Queue queue, Index count, const Real* values) {
@@ -185,6 +211,9 @@ Index scan(Queue, Index count, const Index* counts, Index* first) {
     for (Index i = part.first; i < part.last; ++i) first[i + 1] = sum += counts[i];
   });
   return first[count];
+}
+void add_up(Queue queue, Index count, const Index* counts, Index* first) {
+  scan(queue, count, counts, first);
 }
 
 #endif

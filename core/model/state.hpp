@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "core/base/answer.hpp"
 #include "core/base/column.hpp"
 #include "core/model/modules.hpp"
 #include "core/records/contact_records.hpp"
@@ -167,7 +168,8 @@ struct OuterList {
 /// Inner pair list: pairs of the outer list that can come into contact within the next few steps,
 /// see contact/pair_list/inner_list.hpp. It follows from the outer list, whenever it is made.
 struct InnerList {
-  bool known = false;  // made since the outer list was
+  bool known = false;          // made since the outer list was
+  bool skin_exceeded = false;  // a node left its skin: the list is too old
   Real built_time = 0;
   Column<Real> predicted, skin;  // rows of 8, see PredictedNode; [node]  [m]
   Column<Real> motion;           // [outer pair] see MarkNearFaces
@@ -184,6 +186,13 @@ struct InnerList {
   bool held_known = false;  // in the last step, and neither pairs nor contacts were moved since
 };
 
+/// What the coming step begins with: flags.
+struct Due {
+  Flag release = 0;  // a broken pair has moved far
+  Flag outer = 0;    // a node has left its skin of the outer pair list
+  Flag inner = 0;    // and of the inner one
+};
+
 /// Exposed faces, the surface that they make, and the pair lists.
 struct SearchState {
   Column<Index> exposed_face, face_exposed;  // place -> face, face -> place or -1
@@ -195,6 +204,8 @@ struct SearchState {
   Column<Index> contact_first, contact_corner;  // node -> corner rows of exposed faces
   OuterList outer;
   InnerList inner;
+  Answer<Due> due;
+  std::int64_t asked_step = -1;  // before which step that was asked; -1: it was not
 };
 
 /// Categories of the wall time of steps.

@@ -37,9 +37,12 @@ void list_rows(const Model& m, State& s, const FusedElements& of, const Column<F
   const Index count = blocks_in(of.count);
   fused.row_first.renew(std::size_t(count) + 1);
   Index* const first = fused.row_first.data();
+  if (fused.blocks.size() + fused.lumped.size() == 0) {
+    set_all({}, count + 1, first, Index(0));
+    return fused.row.renew(0);
+  }
   for_each_item({}, count, CountFusedRows{of, moved_by.data(), first + 1});
   fused.row.renew(scan({}, count, first + 1, first));
-  if (fused.blocks.size() + fused.lumped.size() == 0) return;
   if (s.nodes.fused.size() == 0) {
     s.nodes.fused.renew(m.node_count);
     set_all({}, m.node_count, s.nodes.fused.data(), Flag(0));
@@ -62,9 +65,10 @@ void find_fused_elements(const Model& m, State& s, const ElementSet& e, ElementS
   Column<Flag> moved_by;
   moved_by.renew(count);
   set_all({}, count, moved_by.data(), Flag(MovedBy::none));
-  for_each_item({}, Index(es.awake.size()), FindMovers{of, es.awake.data(), moved_by.data()});
+  const Index awake = Index(es.awake.size());
+  for_each_item({}, awake, FindMovers{of, es.awake.data(), moved_by.data()});
   const auto list = [&](MovedBy by, Column<Index>& blocks) {
-    select_items({}, count, IsMovedBy{moved_by.data(), by}, blocks);
+    select_items({}, awake > 0 ? count : 0, IsMovedBy{moved_by.data(), by}, blocks);
   };
   list(MovedBy::fused, fused.blocks);
   list(MovedBy::fused_lumped, fused.lumped);

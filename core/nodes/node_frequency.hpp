@@ -81,4 +81,33 @@ struct NodeFrequency {
   }
 };
 
+/// The node, or block with a mass matrix, that has the highest frequency.
+struct HighestNode {
+  Real squared = -1;              // frequency [1/s2]; -1: no node counts
+  Index node = -1;                // the stiffest of its nodes
+  Real element = 0, contact = 0;  // its squared frequencies  [1/s2]
+  Real bond_part = 0;             // of the stiffness there
+};
+
+/// Describe it; one item.
+struct DescribeHighest {
+  NodeFrequency nodes;
+  const Most* most;
+  HighestNode* answer;
+
+  CDEM_HD void operator()(One) const {
+    HighestNode highest;
+    if (most->item >= 0) {
+      const Frequency at = nodes.of(most->item);
+      const Real stiffness = nodes.stiffness_at(at.stiffest);
+      highest = {.squared = most->value,
+                 .node = at.stiffest,
+                 .element = at.element,
+                 .contact = at.contact,
+                 .bond_part = stiffness > 0 ? nodes.bonds[at.stiffest] / stiffness : 0};
+    }
+    *answer = highest;
+  }
+};
+
 }  // namespace cdem

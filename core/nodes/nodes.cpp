@@ -131,7 +131,6 @@ void sample_after(const Model& m, State& s, Queue q) {
                                .force = s.ground.force.data(),
                                .dt = s.dt,
                                .sample = s.nodes.radiated_sample.data()});
-  finish(q);
 }
 
 /// Sum the forces first, then move: something looks at the forces in between.
@@ -143,7 +142,6 @@ void sum_then_move(const Model& m, State& s, Queue q, const StepPlan& plan) {
   with_dashpots(s, [&](const auto& ground) {
     for_each_item(q, m.node_count, nodes, node_motion(m, s, ground));
   });
-  finish(q);
   if (plan.sample) sample_after(m, s, q);
 }
 
@@ -158,14 +156,12 @@ void sum_and_move(const Model& m, State& s, Queue q, const StepPlan& plan) {
                   AdvanceNodes<Dashing>{sum, node_motion(m, s, ground),
                                         fuses ? s.nodes.fused.data() : nullptr});
   });
-  finish(q);
 }
 
 }  // namespace
 
 void sum_forces(const Model& m, State& s, Queue q, const StepPlan& plan) {
   for_each_item(q, m.node_count, awake(plan, s.nodes.awake), node_forces(m, s, true));
-  finish(q);
 }
 
 void advance_nodes(const Model& m, State& s, Queue q, const StepPlan& plan) {

@@ -43,17 +43,16 @@ NodeFrequency node_frequency(const Model& m, const State& s, bool held) {
 /// The highest frequency, squared, and the node that has it.
 Real highest_frequency_squared(const Model& m, const State& s, bool held, StepLimit& limit) {
   const NodeFrequency nodes = node_frequency(m, s, held);
-  const Most highest = most({}, m.node_count, nodes);
-  if (highest.item < 0) return -1;
-  const Transfer transfer;  // of the stiffness at one node
-  const NodeFrequency own = on_host(nodes);
-  const Frequency at = own.of(highest.item);
-  const Real stiffness = own.stiffness_at(at.stiffest);
-  limit.node = at.stiffest;
-  limit.element_frequency_squared = at.element;
-  limit.contact_frequency_squared = at.contact;
-  limit.bond_part = stiffness > 0 ? own.bonds[at.stiffest] / stiffness : 0;
-  return highest.value;
+  Answer<Most>& most = answer_of_thread<Most>();
+  Answer<HighestNode>& answer = answer_of_thread<HighestNode>();
+  find_most({}, m.node_count, nodes, most);
+  for_each_item({}, 1, DescribeHighest{nodes, most.data(), answer.data()});
+  const HighestNode highest = answer.read({});
+  limit.node = highest.node;
+  limit.element_frequency_squared = highest.element;
+  limit.contact_frequency_squared = highest.contact;
+  limit.bond_part = highest.bond_part;
+  return highest.squared;
 }
 
 }  // namespace
@@ -118,16 +117,17 @@ bool step_is_due(const State& s) {
   return has_contact_pairs(s) || s.step % step_check_interval == 0;
 }
 
-void advance_clock(const Model& m, State& s) {
-  const PhaseTimer timer(s, Phase::node);
+void advance_clock(State& s) {
   s.dt_last = s.dt;
   s.time += s.dt;
   s.step += 1;
   s.dt = std::min(step_growth * s.dt, s.dt_stable);
-  // more contacts may press on a node than the pair list expects; scaled masses follow later, when
-  // a sample of this step has been taken
-  if (s.nodes.relax_mass.size() > 0 || !step_is_due(s)) return;
-  renew_step(m, s);
+}
+
+void renew_step_if_due(const Model& m, State& s) {
+  const PhaseTimer timer(s, Phase::node);
+  // scaled masses follow later, when a sample of this step has been taken
+  if (s.nodes.relax_mass.size() == 0 && step_is_due(s)) renew_step(m, s);
 }
 
 void scale_masses(const Model& m, State& s) {

@@ -63,7 +63,10 @@ void renew_step(const Model& model, State& state);
 bool step_is_due(const State& state);
 
 /// End a step: the clock moves on, and the coming step grows if it may.
-void advance_clock(const Model& model, State& state);
+void advance_clock(State& state);
+
+/// More contacts may press on a node now than the pair list expects.
+void renew_step_if_due(const Model& model, State& state);
 
 /// Adaptive relaxation: give every node the least mass that its stiffness allows in the present
 /// step (Gershgorin), so that stiff and small parts hold up no others. Contacts count twice: they

@@ -138,7 +138,8 @@ Report run(const Model& m, State& s, const Goal& goal) {
   const RunOnDevice on_device;
   begin_run(s, goal);
   const Report report = take_steps(m, s, goal);
-  finish({});  // Python may have views of arrays
+  s.search.asked_step = -1;  // something may move nodes before the next run
+  finish({});                // Python may have views of arrays
   return report;
 }
 

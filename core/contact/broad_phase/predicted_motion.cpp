@@ -88,14 +88,15 @@ void predict_motion(const Model& m, State& s) {
                              .predicted = outer.predicted.data()});
 }
 
-bool any_exceeds_skin(const State& s, const Column<Real>& predicted, Real from,
-                      Real lookahead_time) {
+void ask_if_skin_is_exceeded(const State& s, const Column<Real>& predicted, Real from,
+                             Real lookahead_time, Flag* answer) {
   const Index count = Index(s.search.outer.predicted_nodes.size());
-  return any_item({}, count,
-                  ExceedsSkin{.nodes = {s.nodes.motion.data()},
-                              .nodes_of = {s.search.outer.predicted_nodes.data(), count},
-                              .predicted = {predicted.data()},
-                              .after = std::min(s.time - from, lookahead_time)});
+  raise_if_any({}, count,
+               ExceedsSkin{.nodes = {s.nodes.motion.data()},
+                           .nodes_of = {s.search.outer.predicted_nodes.data(), count},
+                           .predicted = {predicted.data()},
+                           .after = std::min(s.time - from, lookahead_time)},
+               answer);
 }
 
 }  // namespace cdem

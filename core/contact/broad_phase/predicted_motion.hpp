@@ -19,10 +19,10 @@ void predict_motion(const Model& model, State& state);
 /// Give nodes their places among the predicted ones.
 void place_predicted_nodes(const Model& model, State& state);
 
-/// Has any node left the path that was predicted for it at time `from` [s] by more than its skin?
-/// Beyond the lookahead time [s] the lists take every vertex to stand still: sleeping parts need no
-/// rebuild.
-bool any_exceeds_skin(const State& state, const Column<Real>& predicted, Real from,
-                      Real lookahead_time);
+/// Raise a flag of an Answer if a node has left the path that was predicted for it at time `from`
+/// [s] by more than its skin. Beyond the lookahead time [s] the lists take every vertex to stand
+/// still: sleeping parts need no rebuild.
+void ask_if_skin_is_exceeded(const State& state, const Column<Real>& predicted, Real from,
+                             Real lookahead_time, Flag* answer);
 
 }  // namespace cdem

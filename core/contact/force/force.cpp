@@ -80,8 +80,8 @@ ContactsOf contacts_of(State& s) {
 void list_contacts_by_target(State& s, Queue q) {
   const Index count = Index(s.search.exposed_face.size());
   ContactsByTargetState& acting = s.contacts_by_target;
-  list_rows(q, count, 4 * count + Index(s.edges.contact.size() / 4), count, contacts_of(s),
-            acting.first, acting.contact);
+  list_rows_in_room(q, count, 4 * count + Index(s.edges.contact.size() / 4), count, contacts_of(s),
+                    acting.first, acting.contact);
 }
 
 ContactsByTarget contacts_by_target(const State& s) {

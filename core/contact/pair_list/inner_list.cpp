@@ -12,12 +12,6 @@ namespace cdem {
 
 namespace {
 
-bool inner_list_is_due(const State& s) {
-  const InnerList& inner = s.search.inner;
-  return !inner.known || any_exceeds_skin(s, inner.predicted, inner.built_time,
-                                          inner_horizon * s.search.outer.lookahead_time);
-}
-
 /// Predict the motion of the nodes from here on.
 void predict_inner_motion(const Model& m, State& s, Queue q) {
   InnerList& inner = s.search.inner;
@@ -33,6 +27,7 @@ void predict_inner_motion(const Model& m, State& s, Queue q) {
                              .skin = inner.skin.data()});
   inner.built_time = s.time;
   inner.known = true;
+  inner.skin_exceeded = false;
 }
 
 void prune_vertex_faces(const Model& m, State& s, Queue q) {
@@ -144,12 +139,12 @@ void prune_pair_list(const Model& m, State& s, Queue q) {
   predict_inner_motion(m, s, q);
   prune_vertex_faces(m, s, q);
   if (m.semi_edges) prune_edges(m, s, q);
-  finish(q);
 }
 
 void prune_pair_list_if_due(const Model& m, State& s, Queue q) {
   const PhaseTimer timer(s, Phase::search);
-  if (inner_list_is_due(s)) prune_pair_list(m, s, q);
+  const InnerList& inner = s.search.inner;
+  if (!inner.known || inner.skin_exceeded) prune_pair_list(m, s, q);
 }
 
 }  // namespace cdem

@@ -16,15 +16,34 @@
 
 namespace cdem {
 
+void ask_what_is_due(const Model& m, State& s) {
+  const PhaseTimer timer(s, Phase::rebuild);
+  SearchState& search = s.search;
+  search.asked_step = s.step;
+  search.due.set({}, {});
+  Due* const due = search.due.data();
+  if (m.rebuild_interval == 0 && s.built_step >= 0) {
+    ask_if_release_is_due(m, s, &due->release);
+    ask_if_skin_is_exceeded(s, search.outer.predicted, search.outer.built_time,
+                            search.outer.lookahead_time, &due->outer);
+  }
+  if (search.inner.known)
+    ask_if_skin_is_exceeded(s, search.inner.predicted, search.inner.built_time,
+                            inner_horizon * search.outer.lookahead_time, &due->inner);
+}
+
 bool pair_list_is_due(const Model& m, State& s) {
   const PhaseTimer timer(s, Phase::rebuild);
-  s.search.outer.skin_exceeded = false;
+  SearchState& search = s.search;
+  if (search.asked_step != s.step) ask_what_is_due(m, s);
+  const Due due = search.due.read({});
+  search.asked_step = -1;
+  search.inner.skin_exceeded = due.inner != 0;
+  search.outer.skin_exceeded = false;
   if (s.built_step < 0) return true;
   if (m.rebuild_interval > 0) return s.step - s.built_step >= m.rebuild_interval;
-  if (release_is_due(m, s)) return true;
-  SearchState& search = s.search;
-  return search.outer.skin_exceeded = any_exceeds_skin(
-             s, search.outer.predicted, search.outer.built_time, search.outer.lookahead_time);
+  if (due.release != 0) return true;
+  return search.outer.skin_exceeded = due.outer != 0;
 }
 
 void rebuild_pair_list(const Model& m, State& s, const StepPlan& plan) {

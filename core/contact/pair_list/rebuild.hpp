@@ -7,7 +7,12 @@
 
 namespace cdem {
 
-/// Is the outer pair list too old? Notes whether a node has left its skin.
+/// At the end of a step: ask whether the pair lists are too old for the next one. It reads the
+/// answers, so that the host waits for them together with others.
+void ask_what_is_due(const Model& model, State& state);
+
+/// Is the outer pair list too old? Notes whether a node has left its skin of either list. Asks,
+/// unless that was done at the end of the step before.
 bool pair_list_is_due(const Model& model, State& state);
 
 /// Release broken bonds, expose faces and rebuild the outer pair list with all that follows from

@@ -206,11 +206,18 @@ TEST_CASE("list_rows brings numbers into their rows, short and long ones, ascend
     REQUIRE(first.size() == std::size_t(rows) + 1);
     CHECK(on_host(first)[0] == 0);
     CHECK(std::size_t(on_host(first)[rows]) == number.size());
-    bool same = true;
-    for (Index r = 0; r < rows; ++r)
-      same = same && expected[r] == std::vector<Index>(number.data() + on_host(first)[r],
-                                                       number.data() + on_host(first)[r + 1]);
-    CHECK(same);
+    const auto is_expected = [&] {
+      bool same = true;
+      for (Index r = 0; r < rows; ++r)
+        same = same && expected[r] == std::vector<Index>(number.data() + on_host(first)[r],
+                                                         number.data() + on_host(first)[r + 1]);
+      return same;
+    };
+    CHECK(is_expected());
+    first = {};
+    list_rows_in_room({}, items, 2 * items, rows, ToRows{given.data()}, first, number);
+    CHECK(number.size() == 2 * std::size_t(items));
+    CHECK(is_expected());
   });
 }
 

@@ -19,6 +19,12 @@ struct Torn : Scene {
     set_motion(box, velocity);
     start();
   }
+  bool release_is_due() const {
+    Answer<Flag> due;
+    due.set({}, 0);
+    ask_if_release_is_due(model, state, due.data());
+    return due.read({}) != 0;
+  }
   Real intact() const {
     Real sum = 0;
     for (Index k = 0; k < 4; ++k) sum += on_host(state.quads.bond)[k * model.quads.point_stride];
@@ -31,7 +37,7 @@ struct Torn : Scene {
 TEST_CASE("a pair that is torn apart is released, and its faces can be touched") {
   Torn torn({0, 0, 5});
   CHECK(torn.state.search.exposed_face.size() == 10);
-  CHECK(!release_is_due(torn.model, torn.state));
+  CHECK(!torn.release_is_due());
   torn.step(100);
   CHECK(torn.intact() == 0);
   CHECK(on_host(torn.state.quads.status)[0] == 0);
@@ -64,9 +70,9 @@ TEST_CASE("broken pairs are due when they have moved by the indentation") {
   PairState& pairs = torn.state.quads;
   const Real length = on_host(torn.model.face_length)[0];
   on_host(pairs.jump)[0] = 0.9 * torn.model.rules.indentation * length;
-  CHECK(!release_is_due(torn.model, torn.state));
+  CHECK(!torn.release_is_due());
   on_host(pairs.jump)[0] = 1.1 * torn.model.rules.indentation * length;
-  CHECK(release_is_due(torn.model, torn.state));
+  CHECK(torn.release_is_due());
 }
 
 }  // namespace cdem::test

@@ -70,7 +70,10 @@ TEST_CASE("a node has left its skin when it is off its way, not while it follows
     for (Index i = 0; i < 4; ++i)
       put(tet.motion(i), start[i] + time * way[i] + (i == 2 ? off : Vec{0, 0, 0}));
     tet.state.time = built + time;
-    return any_exceeds_skin(tet.state, list, built, horizon);
+    Answer<Flag> exceeds;
+    exceeds.set({}, 0);
+    ask_if_skin_is_exceeded(tet.state, list, built, horizon, exceeds.data());
+    return exceeds.read({}) != 0;
   };
   const Real skin = tet.predicted(2).skin;
   CHECK(!exceeds(0, {0, 0, 0}));
