@@ -111,6 +111,31 @@ CDEM_HD inline void lower_to(Real& least, Real value, bool alone) {
   }
 #endif
 }
+/// The same of an index, which may be negative; returns its old value.
+CDEM_HD inline Index lower_to(Index& least, Index value, bool alone) {
+  if (alone) {
+    const Index before = least;
+    if (value < before) least = value;
+    return before;
+  }
+#if defined(__CUDA_ARCH__)
+  return atomicMin(&least, value);
+#else
+  Index now = __atomic_load_n(&least, __ATOMIC_RELAXED);
+  while (now > value && !__atomic_compare_exchange(&least, &now, &value, true, __ATOMIC_RELAXED,
+                                                   __ATOMIC_RELAXED)) {
+  }
+  return now;
+#endif
+}
+/// Read an index that several threads may lower at once: any of the values that it has meanwhile.
+CDEM_HD inline Index peek(const Index& index) {
+#if defined(__CUDA_ARCH__)
+  return *static_cast<const volatile Index*>(&index);
+#else
+  return __atomic_load_n(&index, __ATOMIC_RELAXED);
+#endif
+}
 /// Set a flag that several threads may set at once.
 CDEM_HD inline void set(Flag& flag, Flag value = 1) {
 #if defined(__CUDA_ARCH__)

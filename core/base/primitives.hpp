@@ -60,6 +60,11 @@ void select_items(Queue queue, Index count, const Kernel& kernel, Column<Index>&
 /// row, the same ones whenever it is called. Waits for how many they are.
 template <class Item, class Kernel>
 void list_items(Queue queue, Index rows, const Kernel& kernel, Column<Item>& items);
+/// The same with the starts of the rows: those of a row are from first[row] to before
+/// first[row + 1].
+template <class Item, class Kernel>
+void list_items(Queue queue, Index rows, const Kernel& kernel, Column<Index>& first,
+                Column<Item>& items);
 
 /// Keep the items of a list for which `kernel(item)` holds, in order; it may change an item. Waits
 /// for how many they are.

@@ -3,6 +3,8 @@
 #include "core/bonds/bond_dashpots.hpp"
 #include "core/bonds/bonded_overlaps.hpp"
 #include "core/bonds/broken_pairs.hpp"
+#include "core/bonds/joined_nodes.hpp"
+#include "core/bonds/surface_rows.hpp"
 
 namespace cdem {
 
@@ -12,6 +14,16 @@ template void select_items(Queue, Index, const HasMovedFar&, Column<Index>&);
 template void select_items(Queue, Index, const HoldsInPart&, Column<Index>&);
 template void select_items(Queue, Index, const IsBonded&, Column<Index>&);
 template void for_each_item(Queue, Index, const WriteBondedKeys&);
+template void for_each_item(Queue, Index, const StartLabels&);
+template void for_each_item(Queue, Index, const JoinBondedNodes&);
+template void for_each_item(Queue, Index, const JoinBodies&);
+template void for_each_item(Queue, Index, const FinishLabels&);
+template void for_each_item(Queue, Index, const MarkExposedPoints&);
+template void list_rows(Queue, Index, Index, Index, const EdgesOfPoints&, Column<Index>&,
+                        Column<Index>&);
+template void list_items(Queue, Index, const EndsOfPoints&, Column<Index>&, Column<Index>&);
+template void for_each_item(Queue, Index, const FindMates&);
+template void for_each_item(Queue, Index, const FindAcross&);
 template void for_each_lane(Queue, Index, Blocks, const BondDashpots<3>&);
 template void for_each_lane(Queue, Index, Blocks, const BondDashpots<4>&);
 template void for_each_item(Queue, Index, Blocks, const OverlapDashpots&);
