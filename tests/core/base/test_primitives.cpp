@@ -167,6 +167,17 @@ TEST_CASE("list_items lists what rows have, row after row; keep_items keeps and 
     Column<std::int64_t> items;
     list_items({}, count, ItemsOfRow{given.data()}, items);
     CHECK(fetch(items) == expected);
+    Column<Index> first;
+    Column<std::int64_t> again;
+    list_items({}, count, ItemsOfRow{given.data()}, first, again);
+    CHECK(fetch(again) == expected);
+    const std::vector<Index> starts = fetch(first);
+    REQUIRE(Index(starts.size()) == count + 1);
+    CHECK(starts[0] == 0);
+    bool apart = true;
+    for (Index row = 0; row < count; ++row)
+      apart = apart && starts[row + 1] == starts[row] + counts[row];
+    CHECK(apart);
     keep_items({}, HalveEven{}, items);
     CHECK(fetch(items) == halves);
   });
