@@ -71,8 +71,11 @@ void merge_edge_stars(const Model& m, State& s) {
                           .exposed = exposed.data(),
                           .wanted = wanted.data()},
             first, edges);
-  list_items({}, m.node_count, EndsOfPoints{first.data(), edges.data(), own, bonded_node},
-             s.search.edge_star_first, s.search.edge_star);
+  list_items(
+      {}, m.node_count,
+      EndsOfPoints{
+          .first = first.data(), .edges = edges.data(), .own = own, .bonded_node = bonded_node},
+      s.search.edge_star_first, s.search.edge_star);
 }
 
 void find_across(const Model& m, State& s) {
