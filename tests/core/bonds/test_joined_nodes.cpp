@@ -75,6 +75,20 @@ TEST_CASE("nodes that any bonds join have the lowest of their numbers, on any nu
     }
 }
 
+TEST_CASE("no bond is lost where threads lower the label of one node at once") {
+  Random random(6);
+  constexpr Index count = 2000;
+  const std::vector<Index> start = own_numbers(count), expected(count, 0);
+  Bonds bonds;
+  for (Index i = 0; i < count - 1; ++i) bonds.push_back({count - 1, i});
+  bool whole = true;
+  for (int round = 0; round < 500; ++round) {
+    shuffle(random, bonds);
+    whole = whole && joined(start, bonds, 3) == expected;
+  }
+  CHECK(whole);
+}
+
 TEST_CASE("nodes of a block are joined from the start") {
   Random random(4);
   constexpr Index count = 2400, a_block = 4;
