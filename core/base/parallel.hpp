@@ -5,6 +5,7 @@
 
 #include "core/base/device.hpp"
 #include "core/base/lanes.hpp"
+#include "core/base/sorted.hpp"
 
 namespace cdem {
 
@@ -31,30 +32,11 @@ struct Blocks {
   /// First item of the b-th of them.
   CDEM_HD Index first(Index b) const { return (id ? id[b] : b) * block_size; }
   /// Is a block among them?
-  CDEM_HD bool has(Index block) const {
-    if (!id) return true;
-    const Index place = first_from(block);
-    return place < count && id[place] == block;
-  }
+  CDEM_HD bool has(Index block) const { return !id || is_among(id, count, block); }
   /// Which of them have numbers from `begin` to before `end`.
   CDEM_HD Range between(Index begin, Index end) const {
     if (!id) return {begin, end};
-    return {first_from(begin), first_from(end)};
-  }
-
- private:
-  /// Place in the list of the first block that is `number` or more. Not std::lower_bound, whose
-  /// steps CUDA 13 leaves out in a kernel, without a word.
-  CDEM_HD Index first_from(Index number) const {
-    Index low = 0, high = count;
-    while (low < high) {
-      const Index middle = low + (high - low) / 2;
-      if (id[middle] < number)
-        low = middle + 1;
-      else
-        high = middle;
-    }
-    return low;
+    return {first_from(id, count, begin), first_from(id, count, end)};
   }
 };
 
