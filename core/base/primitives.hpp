@@ -52,6 +52,12 @@ struct EachNumber {
 /// Sum of an array.
 Real column_sum(Queue queue, const Column<Real>& column);
 
+/// Is the flag of an item set?
+struct IsSet {
+  const Flag* flags;
+  CDEM_HD bool operator()(One item) const { return flags[item.i] != 0; }
+};
+
 /// List the items for which `kernel(item)` holds, ascending. Waits for how many they are.
 template <class Kernel>
 void select_items(Queue queue, Index count, const Kernel& kernel, Column<Index>& list);

@@ -145,11 +145,15 @@ TEST_CASE("select_items lists the items for which a kernel holds") {
   for_sizes_and_threads(3, [](Random& random, Index count) {
     const std::vector<Index> numbers = random_indices(random, count, 1000);
     std::vector<Index> expected;
+    std::vector<Flag> odd(count);
     for (Index i = 0; i < count; ++i)
-      if (numbers[i] % 2 != 0) expected.push_back(i);
+      if (numbers[i] % 2 != 0) expected.push_back(i), odd[i] = Flag(1 + numbers[i] % 3);
     const Column<Index> given = column_of(numbers);
+    const Column<Flag> flags = column_of(odd);
     Column<Index> list;
     select_items({}, count, IsOdd{given.data()}, list);
+    CHECK(fetch(list) == expected);
+    select_items({}, count, IsSet{flags.data()}, list);
     CHECK(fetch(list) == expected);
   });
 }
