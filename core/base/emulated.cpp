@@ -40,7 +40,7 @@ constexpr std::size_t page = 4096, arena_size = std::size_t(16) << 30;
 struct Word {
   std::uint32_t launch, item;
   struct Bytes {
-    std::uint8_t read, written, raised;  // a bit for each byte; raised by an atomic operation
+    std::uint8_t read, written, raised;  // a bit for each byte; raised: atomically, or read so
   } here, before;
 };
 
@@ -395,7 +395,7 @@ void __tsan_write_range(void* p, std::size_t n) {
 
 #define CDEM_ATOMIC(bits, type)                                                                  \
   type __tsan_atomic##bits##_load(const volatile type* p, int) {                                 \
-    touch(const_cast<const type*>(p), bits / 8, Way::read, __builtin_return_address(0));         \
+    touch(const_cast<const type*>(p), bits / 8, Way::raise, __builtin_return_address(0));        \
     return __atomic_load_n(p, __ATOMIC_SEQ_CST);                                                 \
   }                                                                                              \
   void __tsan_atomic##bits##_store(volatile type* p, type value, int) {                          \

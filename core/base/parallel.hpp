@@ -5,6 +5,7 @@
 
 #include "core/base/device.hpp"
 #include "core/base/lanes.hpp"
+#include "core/base/sorted.hpp"
 
 namespace cdem {
 
@@ -31,30 +32,11 @@ struct Blocks {
   /// First item of the b-th of them.
   CDEM_HD Index first(Index b) const { return (id ? id[b] : b) * block_size; }
   /// Is a block among them?
-  CDEM_HD bool has(Index block) const {
-    if (!id) return true;
-    const Index place = first_from(block);
-    return place < count && id[place] == block;
-  }
+  CDEM_HD bool has(Index block) const { return !id || is_among(id, count, block); }
   /// Which of them have numbers from `begin` to before `end`.
   CDEM_HD Range between(Index begin, Index end) const {
     if (!id) return {begin, end};
-    return {first_from(begin), first_from(end)};
-  }
-
- private:
-  /// Place in the list of the first block that is `number` or more. Not std::lower_bound, whose
-  /// steps CUDA 13 leaves out in a kernel, without a word.
-  CDEM_HD Index first_from(Index number) const {
-    Index low = 0, high = count;
-    while (low < high) {
-      const Index middle = low + (high - low) / 2;
-      if (id[middle] < number)
-        low = middle + 1;
-      else
-        high = middle;
-    }
-    return low;
+    return {first_from(id, count, begin), first_from(id, count, end)};
   }
 };
 
@@ -109,6 +91,31 @@ CDEM_HD inline void lower_to(Real& least, Real value, bool alone) {
   while (now > value && !__atomic_compare_exchange(&least, &now, &value, true, __ATOMIC_RELAXED,
                                                    __ATOMIC_RELAXED)) {
   }
+#endif
+}
+/// The same of an index, which may be negative; returns its old value.
+CDEM_HD inline Index lower_to(Index& least, Index value, bool alone) {
+  if (alone) {
+    const Index before = least;
+    if (value < before) least = value;
+    return before;
+  }
+#if defined(__CUDA_ARCH__)
+  return atomicMin(&least, value);
+#else
+  Index now = __atomic_load_n(&least, __ATOMIC_RELAXED);
+  while (now > value && !__atomic_compare_exchange(&least, &now, &value, true, __ATOMIC_RELAXED,
+                                                   __ATOMIC_RELAXED)) {
+  }
+  return now;
+#endif
+}
+/// Read an index that several threads may lower at once: any of the values that it has meanwhile.
+CDEM_HD inline Index peek(const Index& index) {
+#if defined(__CUDA_ARCH__)
+  return *static_cast<const volatile Index*>(&index);
+#else
+  return __atomic_load_n(&index, __ATOMIC_RELAXED);
 #endif
 }
 /// Set a flag that several threads may set at once.

@@ -132,27 +132,32 @@ inline Parts uneven_parts_of(Index items) {
 }
 
 template <class Item, class Kernel>
-void list_items(Queue, Index rows, const Kernel& kernel, Column<Item>& items) {
+void list_items_from(Queue, Index rows, const Kernel& kernel, Index* first, Column<Item>& items) {
   const Parts parts = uneven_parts_of(rows);
   std::vector<Unset<Item>> found(parts.count);
   std::exception_ptr failure;  // memory may run out, and no exception may leave a parallel loop
   parts.for_each([&](Index p, Range part) {
     try {
       const auto act = [&own = found[p]](const Item& item) { own.push_back(item); };
-      for (Index row = part.first; row < part.last; ++row) kernel.visit(One{row}, act);
+      for (Index row = part.first; row < part.last; ++row) {
+        first[row] = Index(found[p].size());
+        kernel.visit(One{row}, act);
+      }
     } catch (...) {
 #pragma omp critical(cdem_list_items)
       failure = std::current_exception();
     }
   });
   if (failure) std::rethrow_exception(failure);
-  std::vector<std::size_t> first(parts.count + 1);
-  for (Index p = 0; p < parts.count; ++p) first[p + 1] = first[p] + found[p].size();
-  items.renew(first.back());
-  parts.for_each([&](Index p, Range) {
-    std::copy(found[p].begin(), found[p].end(), items.data() + first[p]);
+  std::vector<std::size_t> before(parts.count + 1);
+  for (Index p = 0; p < parts.count; ++p) before[p + 1] = before[p] + found[p].size();
+  items.renew(before.back());
+  parts.for_each([&](Index p, Range part) {
+    for (Index row = part.first; row < part.last; ++row) first[row] += Index(before[p]);
+    std::copy(found[p].begin(), found[p].end(), items.data() + before[p]);
     found[p] = {};
   });
+  first[rows] = Index(before.back());
 }
 
 template <class Item, class Kernel>
@@ -306,9 +311,8 @@ struct PutVisited {
   }
 };
 template <class Item, class Kernel>
-void list_items(Queue queue, Index rows, const Kernel& kernel, Column<Item>& items) {
-  if (rows == 0) return items.renew(0);
-  Index* const first = scratch<Index>(std::size_t(rows) + 1);
+void list_items_from(Queue queue, Index rows, const Kernel& kernel, Index* first,
+                     Column<Item>& items) {
   for_each_item(queue, rows, CountVisited<Item, Kernel>{kernel, first + 1});
   items.renew(scan(queue, rows, first + 1, first));
   for_each_item(queue, rows, PutVisited<Item, Kernel>{kernel, first, items.data()});
@@ -349,6 +353,18 @@ Most most(Queue queue, Index count, const Kernel& kernel) {
   Answer<Most>& answer = answer_of_thread<Most>();
   find_most(queue, count, kernel, answer);
   return answer.read(queue);
+}
+
+template <class Item, class Kernel>
+void list_items(Queue queue, Index rows, const Kernel& kernel, Column<Item>& items) {
+  if (rows == 0) return items.renew(0);
+  list_items_from(queue, rows, kernel, scratch<Index>(std::size_t(rows) + 1), items);
+}
+template <class Item, class Kernel>
+void list_items(Queue queue, Index rows, const Kernel& kernel, Column<Index>& first,
+                Column<Item>& items) {
+  first.renew(std::size_t(rows) + 1);
+  list_items_from(queue, rows, kernel, first.data(), items);
 }
 
 /// Count the numbers of every row; each number learns its place there, in any order.

@@ -64,6 +64,12 @@ struct EachNumber {
 /// Sum of an array.
 Real column_sum(Queue queue, const Column<Real>& column);
 
+/// Is the flag of an item set?
+struct IsSet {
+  const Flag* flags;
+  CDEM_HD bool operator()(One item) const { return flags[item.i] != 0; }
+};
+
 /// List the items for which `kernel(item)` holds, ascending. Waits for how many they are.
 template <class Kernel>
 void select_items(Queue queue, Index count, const Kernel& kernel, Column<Index>& list);
@@ -72,6 +78,11 @@ void select_items(Queue queue, Index count, const Kernel& kernel, Column<Index>&
 /// row, the same ones whenever it is called. Waits for how many they are.
 template <class Item, class Kernel>
 void list_items(Queue queue, Index rows, const Kernel& kernel, Column<Item>& items);
+/// The same with the starts of the rows: those of a row are from first[row] to before
+/// first[row + 1].
+template <class Item, class Kernel>
+void list_items(Queue queue, Index rows, const Kernel& kernel, Column<Index>& first,
+                Column<Item>& items);
 
 /// Keep the items of a list for which `kernel(item)` holds, in order; it may change an item. Waits
 /// for how many they are.

@@ -1,176 +1,106 @@
 // bonded_surface.cpp - see bonded_surface.hpp.
 #include "core/bonds/bonded_surface.hpp"
 
-#include <algorithm>
-#include <numeric>
-#include <tuple>
-#include <vector>
-
 #include "core/base/primitives.hpp"
+#include "core/bonds/joined_nodes.hpp"
+#include "core/bonds/surface_rows.hpp"
 #include "core/model/force_sets.hpp"
 
 namespace cdem {
 
 namespace {
 
-/// Call visit(set, its state, pairs) for the sets of conforming pairs, and those that are live.
+/// Call visit(set, its state) for the sets of conforming pairs.
 template <class Visit>
-void for_live_pairs(const Model& m, const State& s, Visit&& visit) {
+void for_each_conforming_set(const Model& m, const State& s, Visit&& visit) {
   for_each_pair_set(m, s, [&](auto, const PairSet& p, const PairState& ps) {
-    if (!conforms(p)) return;
-    const auto is_active = activity(ps);
-    std::vector<Index> live;
-    for (Index i = 0; i < p.count; ++i)
-      if (is_active(i)) live.push_back(i);
-    visit(p, ps, live);
+    if (conforms(p)) visit(p, ps);
   });
 }
-
-/// Joins items; each part has the number of its first item as label.
-class Parts {
- public:
-  explicit Parts(Column<Index>& labels, Index count)
-      : label_(on_host(labels).data()), count_(count) {
-    std::iota(label_, label_ + count_, 0);
-  }
-  void join(Index i, Index j) {
-    const Index a = root(i), b = root(j);
-    label_[std::max(a, b)] = std::min(a, b);
-  }
-  void finish() {
-    for (Index i = 0; i < count_; ++i) label_[i] = root(i);
-  }
-
- private:
-  Index root(Index i) {
-    while (label_[i] != i) i = label_[i] = label_[label_[i]];
-    return i;
-  }
-  Index* label_;
-  Index count_;
-};
 
 void join_nodes(const Model& m, State& s) {
-  Parts parts(s.nodes.bonded_node, m.node_count);
-  for_live_pairs(m, s, [&](const PairSet& p, const PairState& ps, const std::vector<Index>& live) {
-    const auto nodes = on_host(p.nodes);
-    const auto bond = on_host(ps.bond);
-    for (const Index i : live)
-      for (Index k = 0; k < p.points; ++k)
-        if (bond[std::size_t(k) * p.point_stride + i] > 0)
-          parts.join(nodes[std::size_t(k) * p.stride + i],
-                     nodes[std::size_t(p.points + k) * p.stride + i]);
+  const Labels labels{s.nodes.bonded_node.data(), runs_alone()};
+  for_each_item({}, m.node_count, StartLabels{nullptr, labels.label});
+  for_each_conforming_set(m, s, [&](const PairSet& p, const PairState& ps) {
+    for_each_item({}, p.count,
+                  JoinBondedNodes{.status = ps.status.data(),
+                                  .bond = ps.bond.data(),
+                                  .nodes = p.nodes.data(),
+                                  .points = p.points,
+                                  .stride = p.stride,
+                                  .stride_points = p.point_stride,
+                                  .labels = labels});
   });
-  parts.finish();
+  for_each_item({}, m.node_count, FinishLabels{labels});
 }
 
-/// Label the nodes of blocks that any live pair joins.
 void join_bodies(const Model& m, State& s) {
-  Parts parts(s.nodes.body, m.node_count);
-  const auto block = on_host(m.node_block), face_nodes = on_host(m.face_nodes);
-  for (Index i = 1; i < m.node_count; ++i)
-    if (block[i] == block[i - 1]) parts.join(i - 1, i);
+  const Labels labels{s.nodes.body.data(), runs_alone()};
+  for_each_item({}, m.node_count, StartLabels{m.block_first.data(), labels.label});
   for_each_pair_set(m, s, [&](auto, const PairSet& p, const PairState& ps) {
-    const auto is_active = activity(ps);
-    const auto faces = on_host(p.faces);
-    for (Index i = 0; i < p.count; ++i)
-      if (is_active(i)) parts.join(face_nodes[4 * faces[2 * i]], face_nodes[4 * faces[2 * i + 1]]);
+    for_each_item({}, p.count,
+                  JoinBodies{.status = ps.status.data(),
+                             .faces = p.faces.data(),
+                             .face_nodes = m.face_nodes.data(),
+                             .labels = labels});
   });
-  parts.finish();
+  for_each_item({}, m.node_count, FinishLabels{labels});
 }
 
 /// Edge stars of the points that vertices of exposed faces belong to: other ends of all edges that
 /// leave any node of the point, once each, and by a node of an exposed face if there is one.
 void merge_edge_stars(const Model& m, State& s) {
-  const auto bonded_node = on_host(s.nodes.bonded_node);
-  const auto face_nodes = on_host(m.face_nodes);
-  std::vector<Flag> exposed(m.node_count);
-  for (const Index face : on_host(s.search.exposed_face))
-    for (Index k = 0; k < 4; ++k) {
-      const Index node = face_nodes[4 * face + k];
-      if (node >= 0) exposed[node] = 1;
-    }
-  std::vector<Flag> wanted(m.node_count);  // by label
-  for (Index i = 0; i < m.node_count; ++i)
-    if (exposed[i]) wanted[bonded_node[i]] = 1;
-
-  std::vector<Index> first(m.node_count + 1), member(m.node_count);
-  for (Index i = 0; i < m.node_count; ++i) ++first[bonded_node[i] + 1];
-  for (Index i = 0; i < m.node_count; ++i) first[i + 1] += first[i];
-  std::vector<Index> next(first.begin(), first.end() - 1);
-  for (Index i = 0; i < m.node_count; ++i) member[next[bonded_node[i]]++] = i;
-
-  const auto own_first = on_host(m.edge_star_first), own = on_host(m.edge_star);
-  std::vector<Index> star_first(m.node_count + 1), star;
-  std::vector<std::tuple<Index, bool, Index>> ends;  // label, not exposed, node
-  for (Index label = 0; label < m.node_count; ++label) {
-    star_first[label] = Index(star.size());
-    if (!wanted[label]) continue;
-    ends.clear();
-    for (Index c = first[label]; c < first[label + 1]; ++c)
-      for (Index r = own_first[member[c]]; r < own_first[member[c] + 1]; ++r)
-        ends.push_back({bonded_node[own[r]], !exposed[own[r]], own[r]});
-    std::sort(ends.begin(), ends.end());
-    Index last = -1;
-    for (const auto& [end, hidden, node] : ends)
-      if (end != last) star.push_back(node), last = end;
+  const Index* const bonded_node = s.nodes.bonded_node.data();
+  const Index* const own = m.edge_star.data();
+  Column<Flag> exposed, wanted;  // [node], [label]
+  for (Column<Flag>* flags : {&exposed, &wanted}) {
+    flags->renew(m.node_count);
+    set_all({}, m.node_count, flags->data(), Flag(0));
   }
-  star_first[m.node_count] = Index(star.size());
-  s.search.edge_star_first.assign(star_first);
-  s.search.edge_star.assign(star);
+  for_each_item({}, Index(s.search.exposed_face.size()),
+                MarkExposedPoints{.exposed_face = s.search.exposed_face.data(),
+                                  .face_nodes = m.face_nodes.data(),
+                                  .bonded_node = bonded_node,
+                                  .exposed = exposed.data(),
+                                  .wanted = wanted.data()});
+  Column<Index> first, edges;
+  list_rows({}, m.node_count, Index(m.edge_star.size()), m.node_count,
+            EdgesOfPoints{.own_first = m.edge_star_first.data(),
+                          .own = own,
+                          .bonded_node = bonded_node,
+                          .exposed = exposed.data(),
+                          .wanted = wanted.data()},
+            first, edges);
+  list_items(
+      {}, m.node_count,
+      EndsOfPoints{
+          .first = first.data(), .edges = edges.data(), .own = own, .bonded_node = bonded_node},
+      s.search.edge_star_first, s.search.edge_star);
 }
 
-/// The face that each is bonded to, or -1.
-std::vector<Index> bonded_mates(const Model& m, const State& s) {
-  std::vector<Index> mate(m.face_count, -1);
-  for_live_pairs(m, s, [&](const PairSet& p, const PairState&, const std::vector<Index>& live) {
-    const auto faces = on_host(p.faces);
-    for (const Index i : live) {
-      mate[faces[2 * i]] = faces[2 * i + 1];
-      mate[faces[2 * i + 1]] = faces[2 * i];
-    }
-  });
-  return mate;
-}
-
-/// The face beyond a side of an exposed face: walk through the bodies that meet there, from each
-/// into the next that is bonded to it along the side, until a face is in the open.
 void find_across(const Model& m, State& s) {
-  const std::vector<Index> mate = bonded_mates(m, s);
-  const auto bonded_node = on_host(s.nodes.bonded_node);
-  const auto face_nodes = on_host(m.face_nodes), face_edges = on_host(m.face_edges);
-  const auto edge_nodes = on_host(m.edge_nodes), edge_faces = on_host(m.edge_faces);
-  const auto vertices = [&](Index face) { return face_nodes[4 * face + 3] < 0 ? 3 : 4; };
-  // side of a face between the same two points as an edge, or -1
-  const auto side_along = [&](Index face, Index edge) {
-    const Index a = bonded_node[edge_nodes[2 * edge]], b = bonded_node[edge_nodes[2 * edge + 1]];
-    const Index count = vertices(face);
-    for (Index k = 0; k < count; ++k) {
-      const Index u = bonded_node[face_nodes[4 * face + k]];
-      const Index v = bonded_node[face_nodes[4 * face + (k + 1) % count]];
-      if ((u == a && v == b) || (u == b && v == a)) return k;
-    }
-    return Index(-1);
-  };
-  constexpr Index most_bodies = 1000;  // around one edge
-  const Index count = Index(s.search.exposed_face.size());
-  s.search.across.resize(4 * std::size_t(count), -1);
-  const auto exposed_face = on_host(s.search.exposed_face), place = on_host(s.search.face_exposed);
-  const auto across = on_host(s.search.across);
-  for (Index x = 0; x < count; ++x)
-    for (Index k = 0; k < vertices(exposed_face[x]); ++k) {
-      Index face = exposed_face[x], side = k, beyond = -1;
-      for (Index body = 0; body < most_bodies; ++body) {
-        const Index edge = face_edges[4 * face + side];
-        const Index a = edge_faces[2 * edge], b = edge_faces[2 * edge + 1];
-        beyond = a == face ? b : a;
-        if (beyond < 0 || place[beyond] >= 0 || mate[beyond] < 0) break;
-        face = mate[beyond];
-        side = side_along(face, edge);
-        if (side < 0) break;  // the bond is broken there
-      }
-      across[4 * std::size_t(x) + k] = beyond;
-    }
+  Column<Index> mate;
+  mate.renew(m.face_count);
+  set_all({}, m.face_count, mate.data(), Index(-1));
+  for_each_conforming_set(m, s, [&](const PairSet& p, const PairState& ps) {
+    for_each_item({}, p.count, FindMates{ps.status.data(), p.faces.data(), mate.data()});
+  });
+  const std::size_t slots = 4 * s.search.exposed_face.size();
+  Column<Index> across;
+  across.renew(slots);
+  for_each_item({}, Index(slots),
+                FindAcross{.exposed_face = s.search.exposed_face.data(),
+                           .face_exposed = s.search.face_exposed.data(),
+                           .face_nodes = m.face_nodes.data(),
+                           .face_edges = m.face_edges.data(),
+                           .edge_nodes = m.edge_nodes.data(),
+                           .edge_faces = m.edge_faces.data(),
+                           .bonded_node = s.nodes.bonded_node.data(),
+                           .mate = mate.data(),
+                           .before = s.search.across.data(),
+                           .known = Index(s.search.across.size()),
+                           .across = across.data()});
+  s.search.across.swap(across);
 }
 
 /// How many bond points of conforming pairs are intact.

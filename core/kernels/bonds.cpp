@@ -6,8 +6,10 @@
 #include "core/bonds/conforming_transfer.hpp"
 #include "core/bonds/give_history.hpp"
 #include "core/bonds/hinges.hpp"
+#include "core/bonds/joined_nodes.hpp"
 #include "core/bonds/overlap_transfer.hpp"
 #include "core/bonds/release_pairs.hpp"
+#include "core/bonds/surface_rows.hpp"
 
 namespace cdem {
 
@@ -34,6 +36,16 @@ template void for_each_item(Queue, Index, const AwaitSprings&);
 template void list_items(Queue, Index, const ListAwaitedEdges&, Column<EdgeContact>&);
 template void for_each_item(Queue, Index, const CountNewStates&);
 template void for_each_item(Queue, Index, const GiveToSuccessors&);
+template void for_each_item(Queue, Index, const StartLabels&);
+template void for_each_item(Queue, Index, const JoinBondedNodes&);
+template void for_each_item(Queue, Index, const JoinBodies&);
+template void for_each_item(Queue, Index, const FinishLabels&);
+template void for_each_item(Queue, Index, const MarkExposedPoints&);
+template void list_rows(Queue, Index, Index, Index, const EdgesOfPoints&, Column<Index>&,
+                        Column<Index>&);
+template void list_items(Queue, Index, const EndsOfPoints&, Column<Index>&, Column<Index>&);
+template void for_each_item(Queue, Index, const FindMates&);
+template void for_each_item(Queue, Index, const FindAcross&);
 template void for_each_lane(Queue, Index, Blocks, const BondDashpots<3>&);
 template void for_each_lane(Queue, Index, Blocks, const BondDashpots<4>&);
 template void for_each_item(Queue, Index, Blocks, const OverlapDashpots&);

@@ -9,7 +9,6 @@ namespace cdem {
 
 template void for_each_item(Queue, Index, const ListExposed&);
 template bool any_item(Queue, Index, const OpensOrLeaves&);
-template void select_items(Queue, Index, const IsOpen&, Column<Index>&);
 template void for_each_item(Queue, Index, const FlagExposed&);
 template void for_each_item(Queue, Index, const MarkFacesOfPairs&);
 template void for_each_item(Queue, Index, const PairPlaces&);

@@ -9,8 +9,7 @@
 namespace cdem {
 
 template void for_each_item(Queue, Index, const MarkLiveRows&);
-template void for_each_item(Queue, Index, const CountLiveCorners&);
-template void for_each_item(Queue, Index, const PutLiveCorners&);
+template void list_items(Queue, Index, const LiveCorners&, Column<Index>&, Column<Index>&);
 template void for_each_item(Queue, Index, const MarkBlocksOfNodes&);
 template void for_each_item(Queue, Index, const MarkBondedBlocks&);
 template void for_each_item(Queue, Index, const SpreadInBlock&);

@@ -51,7 +51,6 @@ template void for_each_item(Queue, Index, const MarkHeldEdges&);
 template void for_each_item(Queue, Index, const JoinPairsOfEdges&);
 template void for_each_item(Queue, Index, const CopyInnerEdges&);
 template void for_each_item(Queue, Index, const SetOtherEdge&);
-template void select_items(Queue, Index, const IsNear&, Column<Index>&);
 template void list_rows(Queue, Index, Index, Index, const RowOfEdges&, Column<Index>&,
                         Column<Index>&);
 

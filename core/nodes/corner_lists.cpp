@@ -34,12 +34,8 @@ void list_corners(const Model& m, State& s) {
   live.renew(m.corner_rows);
   for_each_row_set(
       m, s, [&](auto, const auto& set, const auto& state) { mark_live_rows(set, state, live); });
-  const LiveCorners corners{m.corner_first.data(), m.corner.data(), live.data()};
-  Column<Index>& first = s.nodes.corner_first;
-  first.renew(std::size_t(m.node_count) + 1);
-  for_each_item({}, m.node_count, CountLiveCorners{corners, first.data() + 1});
-  s.nodes.corner.renew(scan({}, m.node_count, first.data() + 1, first.data()));
-  for_each_item({}, m.node_count, PutLiveCorners{corners, first.data(), s.nodes.corner.data()});
+  list_items({}, m.node_count, LiveCorners{m.corner_first.data(), m.corner.data(), live.data()},
+             s.nodes.corner_first, s.nodes.corner);
 }
 
 void list_contact_corners(const Model& m, State& s) {

@@ -18,33 +18,15 @@ struct MarkLiveRows {
   }
 };
 
-/// The live ones of the corner rows of a node.
+/// The live ones of the corner rows of a node, see list_items.
 struct LiveCorners {
   const Index *first, *corner;  // of all pairs and modules
   const Flag* live;
 
   template <class Act>
-  CDEM_HD void visit(Index node, const Act& act) const {
-    for (Index c = first[node]; c < first[node + 1]; ++c)
+  CDEM_HD void visit(One node, const Act& act) const {
+    for (Index c = first[node.i]; c < first[node.i + 1]; ++c)
       if (live[corner[c] < 0 ? ~corner[c] : corner[c]]) act(corner[c]);
-  }
-};
-struct CountLiveCorners {
-  LiveCorners of;
-  Index* count;
-  CDEM_HD void operator()(One node) const {
-    Index sum = 0;
-    of.visit(node.i, [&](Index) { ++sum; });
-    count[node.i] = sum;
-  }
-};
-struct PutLiveCorners {
-  LiveCorners of;
-  const Index* first;
-  Index* corner;
-  CDEM_HD void operator()(One node) const {
-    Index next = first[node.i];
-    of.visit(node.i, [&](Index row) { corner[next++] = row; });
   }
 };
 

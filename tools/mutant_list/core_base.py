@@ -6,10 +6,10 @@ FAULTS = [
     Mutant(
         "listed block",
         "a block that is on the list is looked for behind its place",
-        "core/base/parallel.hpp",
-        "if (id[middle] < number)",
-        "if (id[middle] <= number)",
-        "tests/core/base/test_parallel_loops.cpp",
+        "core/base/sorted.hpp",
+        "if (numbers[middle] < number)",
+        "if (numbers[middle] <= number)",
+        "tests/core/base/test_sorted.cpp",
     ),
     Mutant(
         "exact sum",

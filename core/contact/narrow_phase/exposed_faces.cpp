@@ -125,7 +125,7 @@ void renew_exposed(const Model& m, State& s, const Column<Flag>& open) {
   const Index all = Index(s.search.face_exposed.size());
   if (!any_item({}, all, OpensOrLeaves{open.data(), s.search.face_exposed.data()})) return;
   Column<Index> faces;
-  select_items({}, all, IsOpen{open.data()}, faces);
+  select_items({}, all, IsSet{open.data()}, faces);
   const Places at = move_faces(s, faces);
   drop_targets(s, at.to);
   move_edges(s, at.before, at.to);

@@ -8,12 +8,7 @@
 
 namespace cdem {
 
-/// Is a face exposed?
-struct IsOpen {
-  const Flag* open;
-  CDEM_HD bool operator()(One face) const { return open[face.i] != 0; }
-};
-/// Does that differ from where the faces are?
+/// Do flags of exposed faces differ from where the faces are?
 struct OpensOrLeaves {
   const Flag* open;
   const Index* place;  // [face] among the exposed ones, or -1

@@ -104,7 +104,7 @@ void prune_edges(const Model& m, State& s, Queue q) {
                                 .contact = s.edges.contact.data(),
                                 .pairs = of_edges,
                                 .near = inner.edges.data()});
-  const IsNear near{inner.edges.data()};
+  const IsSet near{inner.edges.data()};
   select_items(q, pairs, near, inner.near_edges);
   for_each_item(q, Index(inner.near_edges.size()),
                 JoinPairsOfEdges{.listed = inner.near_edges.data(),

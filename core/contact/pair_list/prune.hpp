@@ -372,12 +372,6 @@ struct JoinPairsOfEdges {
   }
 };
 
-/// Is a pair near, see select_items?
-struct IsNear {
-  const Flag* near;
-  CDEM_HD bool operator()(One pair) const { return near[pair.i] != 0; }
-};
-
 /// Copy the pairs of edges that are near to where the search looks for them.
 struct CopyInnerEdges {
   const Index* near;  // [pair]

@@ -48,6 +48,16 @@ struct SetAndRead {
   }
 };
 
+/// Each item lowers one number that all look at: to follow labels in any order.
+struct LookAndLower {
+  Index *number, *found;
+  bool plainly;
+  CDEM_HD void operator()(One item) const {
+    found[item.i] = plainly ? *number : peek(*number);
+    lower_to(*number, item.i, false);
+  }
+};
+
 /// Lists items in the order in which they run.
 struct ListItems {
   Index *count, *list;
@@ -101,6 +111,15 @@ TEST_CASE("a flag that several items set is no race if it is set as one, and not
   CHECK_THROWS_AS(for_each_item({}, count, WriteOne{flag.data()}), std::logic_error);
   CHECK_NOTHROW(for_each_item({}, count, SetOne{flag.data()}));
   CHECK_THROWS_AS(for_each_item({}, count, SetAndRead{flag.data(), found.data()}),
+                  std::logic_error);
+}
+
+TEST_CASE("a number that items lower is no race if they look at it with care") {
+  Column<Index> number = column_of<Index>(1), found = column_of<Index>(count);
+  on_host(number)[0] = count;
+  CHECK_NOTHROW(for_each_item({}, count, LookAndLower{number.data(), found.data(), false}));
+  CHECK(on_host(number)[0] == 0);
+  CHECK_THROWS_AS(for_each_item({}, count, LookAndLower{number.data(), found.data(), true}),
                   std::logic_error);
 }
 

@@ -41,6 +41,32 @@ TEST_CASE("the largest and the smallest number are kept, on one thread and on se
   omp_set_num_threads(threads);
 }
 
+TEST_CASE("the lowest index is kept, and every one that was is given back once, on any threads") {
+  constexpr Index count = 4000;
+  const int threads = omp_get_max_threads();
+  for (const bool alone : {true, false}) {
+    omp_set_num_threads(alone ? 1 : 3);
+    Index least = count;
+    std::vector<Index> before(count);
+    bool falls = true;
+#pragma omp parallel for schedule(static) reduction(&& : falls)
+    for (Index i = 0; i < count; ++i) {
+      const Index number = (i * 7 + 13) % count - 9, seen = peek(least);
+      before[i] = lower_to(least, number, alone);
+      falls = falls && before[i] <= seen && peek(least) <= number;
+    }
+    CHECK(least == -9);
+    CHECK(falls);
+    std::vector<Index> lowered;  // those that were there when a lower one came
+    for (Index i = 0; i < count; ++i)
+      if (before[i] > (i * 7 + 13) % count - 9) lowered.push_back(before[i]);
+    std::sort(lowered.begin(), lowered.end());
+    CHECK(std::adjacent_find(lowered.begin(), lowered.end()) == lowered.end());
+    CHECK(lowered.back() == count);
+  }
+  omp_set_num_threads(threads);
+}
+
 TEST_CASE("set sets a flag") {
   Flag flag = 0;
   set(flag);

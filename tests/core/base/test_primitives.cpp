@@ -145,11 +145,15 @@ TEST_CASE("select_items lists the items for which a kernel holds") {
   for_sizes_and_threads(3, [](Random& random, Index count) {
     const std::vector<Index> numbers = random_indices(random, count, 1000);
     std::vector<Index> expected;
+    std::vector<Flag> odd(count);
     for (Index i = 0; i < count; ++i)
-      if (numbers[i] % 2 != 0) expected.push_back(i);
+      if (numbers[i] % 2 != 0) expected.push_back(i), odd[i] = Flag(1 + numbers[i] % 3);
     const Column<Index> given = column_of(numbers);
+    const Column<Flag> flags = column_of(odd);
     Column<Index> list;
     select_items({}, count, IsOdd{given.data()}, list);
+    CHECK(fetch(list) == expected);
+    select_items({}, count, IsSet{flags.data()}, list);
     CHECK(fetch(list) == expected);
   });
 }
@@ -167,6 +171,17 @@ TEST_CASE("list_items lists what rows have, row after row; keep_items keeps and 
     Column<std::int64_t> items;
     list_items({}, count, ItemsOfRow{given.data()}, items);
     CHECK(fetch(items) == expected);
+    Column<Index> first;
+    Column<std::int64_t> again;
+    list_items({}, count, ItemsOfRow{given.data()}, first, again);
+    CHECK(fetch(again) == expected);
+    const std::vector<Index> starts = fetch(first);
+    REQUIRE(Index(starts.size()) == count + 1);
+    CHECK(starts[0] == 0);
+    bool apart = true;
+    for (Index row = 0; row < count; ++row)
+      apart = apart && starts[row + 1] == starts[row] + counts[row];
+    CHECK(apart);
     keep_items({}, HalveEven{}, items);
     CHECK(fetch(items) == halves);
   });

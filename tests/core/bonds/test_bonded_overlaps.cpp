@@ -44,17 +44,6 @@ struct Overlaps {
 
 }  // namespace
 
-TEST_CASE("a key is found among ascending ones, wherever it is, and no other") {
-  for (Index count = 0; count < 20; ++count) {
-    std::vector<std::uint64_t> keys;
-    for (Index i = 0; i < count; ++i) keys.push_back(key_of(i / 3, 2 * (i % 3)));
-    for (Index a = -1; a < 8; ++a)
-      for (Index b = -1; b < 6; ++b)
-        CHECK(has_key(keys.data(), count, key_of(a, b)) ==
-              (std::count(keys.begin(), keys.end(), key_of(a, b)) > 0));
-  }
-}
-
 TEST_CASE("the faces and vertices of bonded overlaps are kept from the search, and no others") {
   Random random(17);
   for (const Index count : {0, 1, 2, 40, 200}) {

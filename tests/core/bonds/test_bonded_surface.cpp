@@ -6,12 +6,11 @@ namespace cdem::test {
 
 namespace {
 
-/// Two boxes on each other.
-struct Stack : Scene {
-  Stack() {
+/// Unit boxes, those beside each other bonded.
+struct Boxes : Scene {
+  explicit Boxes(const std::vector<Vec>& low) {
     bonded = true;
-    add_box({0, 0, 0}, {1, 1, 1});
-    add_box({0, 0, 1}, {1, 1, 1});
+    for (const Vec& at : low) add_box(at, {1, 1, 1});
     build();
     set_interface({{"cohesion", 1e9}, {"tensile_strength", 1e9}});
     start();
@@ -34,6 +33,15 @@ struct Stack : Scene {
       places.push_back(across[k] < 0 ? -1 : on_host(state.search.face_exposed)[across[k]]);
     return places;
   }
+  void break_bonds(Index pair) {
+    for (Index k = 0; k < 4; ++k)
+      on_host(state.quads.bond)[k * model.quads.point_stride + pair] = 0;
+  }
+};
+
+/// Two boxes on each other.
+struct Stack : Boxes {
+  Stack() : Boxes({{0, 0, 0}, {0, 0, 1}}) {}
 };
 
 bool has(const std::vector<Index>& list, Index value) {
@@ -79,6 +87,35 @@ TEST_CASE("beyond a side at a bond lies the face of the other block, flush with 
   }
 }
 
+TEST_CASE(
+    "the face beyond a side is found through all bodies around an edge, up to a broken bond") {
+  Boxes ring({{0, 0, 0}, {-1, 0, 0}, {-1, -1, 0}});  // the fourth is missing
+  const Index begin = ring.exposed(0, {0, -1, 0}), end = ring.exposed(2, {1, 0, 0});
+  CHECK(has(ring.beyond(begin), end));
+  CHECK(has(ring.beyond(end), begin));
+  ring.break_bonds(1);
+  join_surfaces(ring.model, ring.state, false);
+  CHECK(!has(ring.beyond(begin), end));
+  CHECK(!has(ring.beyond(end), begin));
+  CHECK(has(ring.beyond(begin), -1));  // a face that is not exposed yet
+}
+
+TEST_CASE("beyond a side of a triangle is another face of it, and it has no fourth side") {
+  Scene tet;
+  Random random(1);
+  tet.add_tet(random, {0, 0, 0}, 1);
+  tet.build();
+  tet.set_interface({});
+  tet.start();
+  for (Index x = 0; x < 4; ++x) {
+    const Index* const across = on_host(tet.state.search.across).data() + 4 * x;
+    std::vector<Index> faces{x, across[0], across[1], across[2]};
+    std::sort(faces.begin(), faces.end());
+    CHECK(faces == std::vector<Index>{0, 1, 2, 3});
+    CHECK(across[3] == -1);
+  }
+}
+
 TEST_CASE("edges that leave a point are those of all nodes that are bonded there, each once") {
   const Stack stack;
   const Column<Index>&first = stack.state.search.edge_star_first,
@@ -95,8 +132,7 @@ TEST_CASE("edges that leave a point are those of all nodes that are bonded there
 
 TEST_CASE("where the bond is broken the nodes part") {
   Stack stack;
-  PairState& pairs = stack.state.quads;
-  for (Index k = 0; k < 4; ++k) on_host(pairs.bond)[k * stack.model.quads.point_stride] = 0;
+  stack.break_bonds(0);
   join_surfaces(stack.model, stack.state, false);
   for (Index i = 0; i < 16; ++i) CHECK(on_host(stack.state.nodes.bonded_node)[i] == i);
 }
