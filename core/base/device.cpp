@@ -8,6 +8,7 @@
 
 #include "core/base/lanes.hpp"
 #include "core/base/openmp.hpp"
+#include "core/base/spare_memory.hpp"
 
 namespace cdem {
 inline namespace CDEM_DEVICE {
@@ -17,13 +18,33 @@ inline namespace CDEM_DEVICE {
 void check(cudaError_t error) {
   if (error != cudaSuccess) throw std::runtime_error(cudaGetErrorString(error));
 }
-void* allocate(std::size_t bytes) {
-  void* memory = nullptr;
-  if (cudaMallocManaged(&memory, bytes) != cudaSuccess) throw std::bad_alloc();
-  check(cudaMemset(memory, 0, bytes));
+namespace {
+
+struct ManagedMemory {
+  static void* take(std::size_t bytes) {
+    void* memory = nullptr;
+    if (cudaMallocManaged(&memory, bytes) == cudaSuccess) return memory;
+    cudaGetLastError();  // it is dealt with
+    return nullptr;
+  }
+  static void give(void* memory) { cudaFree(memory); }
+};
+/// Never released: the device may be gone by then.
+SpareMemory<ManagedMemory>& managed_memory() {
+  static auto& memory = *new SpareMemory<ManagedMemory>;
   return memory;
 }
-void release(void* memory) { cudaFree(memory); }
+
+}  // namespace
+
+void* allocate(std::size_t bytes) {
+  void* const memory = managed_memory().take(bytes);
+  check(cudaMemsetAsync(memory, 0, bytes, nullptr));  // after launches that still use it
+  return memory;
+}
+void release(void* memory) {
+  if (memory) managed_memory().give(memory);
+}
 void* allocate_answer(std::size_t bytes) {
   void* memory = nullptr;
   check(cudaHostAlloc(&memory, bytes, cudaHostAllocMapped));

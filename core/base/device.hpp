@@ -35,7 +35,8 @@ struct Queue {
 /// Zeroed, 64-byte aligned memory that the kernels can reach (managed memory on CUDA, an arena of
 /// emulated.hpp).
 void* allocate(std::size_t bytes);
-/// Give memory back once the launches that may use it are done.
+/// Give memory back. Launches that are already put may still use it, and later ones may take it
+/// again.
 void release(void* memory);
 
 /// Zeroed memory of a few words that kernels set and the host reads: on CUDA it is the host's, for
