@@ -90,10 +90,11 @@ void describe_outer_faces(OuterList& outer, Stored&& stored) {
           .layout = Layout::columns},
          outer.vf_bounds);
   stored({.name = "outer.acting_first",
-          .meaning = "faces whose contacts may act on a face",
+          .meaning = "faces whose contacts may act on a face, where a law asks for areas",
           .rows = "exposed",
           .layout = Layout::starts,
-          .refers_to = {"acting_faces"}},
+          .refers_to = {"acting_faces"},
+          .optional = true},
          outer.acting_first);
   stored({.name = "outer.faces_acting_on",
           .meaning = "exposed face whose contacts may act on it",

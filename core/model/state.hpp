@@ -158,7 +158,8 @@ struct OuterList {
   Column<Index> edge_first, edge_pairs;     // by edge of the mesh, see PairsOfEdges
   Column<Index> edge_others;                // the same
   Column<Real> rotation_soon;               // [exposed] see ListedFaces
-  Column<Index> acting_first, faces_acting_on;    // by face: those whose contacts may act on it
+  Column<Index> acting_first, faces_acting_on;    // by face: those whose contacts may act on it,
+                                                  // where a law asks for areas, else empty
   Column<Flag> face_listed;                       // [exposed] may it act on any, or any on it?
   Column<Index> predicted_nodes, node_predicted;  // nodes of exposed faces; node -> place or -1
   Column<Real> predicted;                         // rows of 8 of theirs, see PredictedNode
@@ -250,9 +251,14 @@ struct State {
   std::vector<Real> known_load_factor, known_velocity_factor;  // the same, for the host
 };
 
-/// Does the pair list name anything? Without it contacts only end, in the first step with it.
+/// Does a pair list name anything?
+inline bool names_pairs(const OuterList& outer) {
+  return outer.slot_pairs.size() > 0 || outer.ee_codes.size() > 0 ||
+         outer.faces_acting_on.size() > 0;
+}
+/// Does the present one? Without it contacts only end, in the first step with it.
 inline bool has_contact_pairs(const State& s) {
-  return s.search.outer.faces_acting_on.size() > 0 || s.built_step == s.step;
+  return names_pairs(s.search.outer) || s.built_step == s.step;
 }
 
 }  // namespace cdem

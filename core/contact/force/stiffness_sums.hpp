@@ -46,28 +46,14 @@ struct SumBondStiffness {
   }
 };
 
-/// The stiffest contact that a face may have with those that may act on it; either face learns it.
-struct FindStiffestContacts {
+/// Stiffness of a contact that a mother face may have with another one, at most.
+struct StiffnessOfFaces {
   ContactLaws laws;
   FaceGeometry geometry;
-  const Index *acting_first, *acting;  // [exposed + 1]
-  bool alone;                          // see raise_to
-  Real* stiffest;                      // [exposed], initially 0  [N/m]
 
-  CDEM_HD void operator()(One y) const {
-    Real own = 0;
-    for (Index c = acting_first[y.i]; c < acting_first[y.i + 1]; ++c) {
-      const Real one = stiffness(acting[c], y.i);
-      own = max_of(own, one);
-      raise_to(stiffest[acting[c]], one, alone);
-    }
-    raise_to(stiffest[y.i], own, alone);
-  }
-
- private:
-  CDEM_HD Real stiffness(Index x, Index y) const {
-    const Index interface = laws.between(geometry, x, y);
-    const auto spring = laws.spring(geometry, interface, x, y);
+  CDEM_HD Real operator()(Index mother, Index face) const {
+    const Index interface = laws.between(geometry, mother, face);
+    const auto spring = laws.spring(geometry, interface, mother, face);
     const Real most = HystereticUnloading<Real>::of(laws, interface).stiffness(spring);
     // the rotation springs of four vertices, see UpdateRollingCouples
     const bool rolls = laws.interfaces.interfaces[interface].rolling_resistance > 0;
@@ -79,7 +65,7 @@ struct FindStiffestContacts {
 /// again for semi-edges.
 struct SumContactStiffness {
   const Index *contact_first, *contact_corner;  // [node + 1] slots of listed faces
-  const Real* stiffest;
+  const Real* stiffest;                         // [exposed]  [N/m]
   Real* sum;
 
   CDEM_HD void operator()(One node) const {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/contact/broad_phase/vertex_face_pairs.hpp"
+#include "core/contact/force/stiffness_sums.hpp"
 
 namespace cdem {
 
@@ -27,13 +28,26 @@ struct ListFacePairs {
   }
 };
 
-/// Mark both faces of a pair.
+/// Mark the faces on the lists of two patches, and find the stiffest contact that each may have.
 struct MarkListedFaces {
-  const FacePair* pairs;
-  Flag* listed;  // [exposed]
-  CDEM_HD void operator()(One pair) const {
-    set(listed[pairs[pair.i].mother]);
-    set(listed[pairs[pair.i].face]);
+  ListFacePairs listed_by;
+  StiffnessOfFaces stiffness;
+  bool alone;      // see raise_to
+  Flag* listed;    // [exposed] initially 0
+  Real* stiffest;  // [exposed] initially 0  [N/m]
+
+  CDEM_HD void operator()(One place) const {
+    listed_by.visit(place, [&](const FacePair& of) {
+      const Real one = stiffness(of.mother, of.face);
+      learn(of.mother, one);
+      learn(of.face, one);
+    });
+  }
+
+ private:
+  CDEM_HD void learn(Index face, Real one) const {
+    set(listed[face]);
+    raise_to(stiffest[face], one, alone);
   }
 };
 

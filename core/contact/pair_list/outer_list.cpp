@@ -6,6 +6,7 @@
 #include "core/contact/broad_phase/exposed_patches.hpp"
 #include "core/contact/broad_phase/pair_search.hpp"
 #include "core/contact/broad_phase/predicted_motion.hpp"
+#include "core/contact/force/stiffness_bound.hpp"
 #include "core/contact/pair_list/outer_faces.hpp"
 #include "core/contact/pair_list/views.hpp"
 
@@ -17,7 +18,7 @@ namespace {
 void drop(OuterList& outer) {
   for (Column<Index>* indices :
        {&outer.vf_pairs, &outer.ee_pairs, &outer.ee_codes, &outer.slot_faces, &outer.slot_pairs,
-        &outer.edge_pairs, &outer.edge_others, &outer.faces_acting_on})
+        &outer.edge_pairs, &outer.edge_others, &outer.acting_first, &outer.faces_acting_on})
     *indices = {};
   for (Column<float>* bounds : {&outer.vf_bounds, &outer.ee_bounds}) *bounds = {};
 }
@@ -84,25 +85,40 @@ void list_edge_pairs(const Model& m, const PairContext& f, PairSearch& search, S
   for_each_item(q, count, SetOtherEdge{edges, outer.edge_pairs.data(), outer.edge_others.data()});
 }
 
-/// For every exposed face list the others whose contacts may act on it.
+/// Mark the exposed faces on the lists, and find the stiffest contact that each may have.
+Column<Real> mark_listed_faces(const Model& m, const PairSearch& search, State& s, Queue q) {
+  const Index faces = Index(s.search.exposed_face.size());
+  Column<Flag>& listed = s.search.outer.face_listed;
+  Column<Real> stiffest;
+  stiffest.renew(faces);
+  set_all(q, faces, stiffest.data(), Real(0));
+  listed.renew(faces);
+  set_all(q, faces, listed.data(), Flag(0));
+  for_each_item(q, Index(search.pairs.size()),
+                MarkListedFaces{.listed_by = {search.patches.data(), search.pairs.data()},
+                                .stiffness = stiffness_of_faces(m, s),
+                                .alone = runs_alone(),
+                                .listed = listed.data(),
+                                .stiffest = stiffest.data()});
+  return stiffest;
+}
+
+/// For every exposed face list the others whose contacts may act on it, for laws that ask for
+/// areas.
 void list_acting_faces(const PairSearch& search, SearchState& s, Queue q) {
   OuterList& outer = s.outer;
-  const Index faces = Index(s.exposed_face.size());
   Column<FacePair> pairs;
   list_items(q, Index(search.pairs.size()),
              ListFacePairs{search.patches.data(), search.pairs.data()}, pairs);
   const Index count = Index(pairs.size());
-  outer.face_listed.renew(faces);
-  set_all(q, faces, outer.face_listed.data(), Flag(0));
-  for_each_item(q, count, MarkListedFaces{pairs.data(), outer.face_listed.data()});
-  list_rows(q, count, count, faces, RowOfActingFace{pairs.data()}, outer.acting_first,
-            outer.faces_acting_on);
+  list_rows(q, count, count, Index(s.exposed_face.size()), RowOfActingFace{pairs.data()},
+            outer.acting_first, outer.faces_acting_on);
   for_each_item(q, count, WriteActingFaces{pairs.data(), outer.faces_acting_on.data()});
 }
 
 }  // namespace
 
-void list_candidates(const Model& m, State& s) {
+Column<Real> list_candidates(const Model& m, State& s) {
   const Queue q;
   predict_motion(m, s);
   drop(s.search.outer);
@@ -118,7 +134,8 @@ void list_candidates(const Model& m, State& s) {
   search.edges = {};
   search.moving = {};
   s.search.inner.known = false;
-  list_acting_faces(search, s.search, q);
+  if (m.interface_traits.ask_area) list_acting_faces(search, s.search, q);
+  return mark_listed_faces(m, search, s, q);
 }
 
 }  // namespace cdem
