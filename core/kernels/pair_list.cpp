@@ -30,7 +30,8 @@ template void for_each_item(Queue, Index, const WriteVertexFaces&);
 template void list_items(Queue, Index, const ListSemiSprings&, Column<Candidate>&);
 template void list_rows(Queue, Index, Index, Index, const RowOfCandidate&, Column<Index>&,
                         Column<Index>&);
-template void for_each_item(Queue, Index, const WriteSlotFaces&);
+template void for_each_item(Queue, Index, const WriteSlotPairs&);
+template void for_each_item(Queue, Index, const FindEdges&);
 template void for_each_item(Queue, Index, const MakeMovingEdges&);
 template void list_items(Queue, Index, const ListEdgesOfPatches&, Column<EdgeItem>&);
 template void keep_items(Queue, const EdgesMayTouch&, Column<EdgeItem>&);
@@ -50,7 +51,6 @@ template void for_each_lane(Queue, Index, const MarkNearEdges&);
 template void for_each_item(Queue, Index, const MarkHeldEdges&);
 template void for_each_item(Queue, Index, const JoinPairsOfEdges&);
 template void for_each_item(Queue, Index, const CopyInnerEdges&);
-template void for_each_item(Queue, Index, const SetOtherEdge&);
 template void select_items(Queue, Index, const IsNear&, Column<Index>&);
 template void list_rows(Queue, Index, Index, Index, const RowOfEdges&, Column<Index>&,
                         Column<Index>&);

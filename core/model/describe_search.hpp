@@ -64,13 +64,8 @@ void describe_outer_faces(OuterList& outer, Stored&& stored) {
           .layout = Layout::starts,
           .refers_to = {"outer_faces"}},
          outer.slot_first);
-  stored({.name = "outer.slot_faces",
-          .meaning = "exposed face that the vertex may touch",
-          .rows = "outer_faces",
-          .refers_to = {"exposed"}},
-         outer.slot_faces);
   stored({.name = "outer.slot_pairs",
-          .meaning = "pair of vertex and face that this is of",
+          .meaning = "pair of the vertex and a face that it may touch",
           .rows = "outer_faces",
           .refers_to = {"outer_vertex_faces"}},
          outer.slot_pairs);
@@ -162,6 +157,11 @@ void describe_outer_edges(OuterList& outer, Stored&& stored) {
           .numbers = 2,
           .refers_to = {"slots"}},
          outer.ee_sides);
+  stored({.name = "outer.ee_edges",
+          .meaning = "the edge of the mesh that it is",
+          .rows = "outer_edges",
+          .refers_to = {"edges"}},
+         outer.ee_edges);
   stored({.name = "outer.edge_first",
           .meaning = "pairs of an edge with edges of higher numbers",
           .rows = "edges",
@@ -174,11 +174,6 @@ void describe_outer_edges(OuterList& outer, Stored&& stored) {
           .rows = "pairs_of_edges",
           .refers_to = {"outer_edge_pairs"}},
          outer.edge_pairs);
-  stored({.name = "outer.edge_others",
-          .meaning = "its other edge",
-          .rows = "pairs_of_edges",
-          .refers_to = {"edges"}},
-         outer.edge_others);
 }
 
 /// Inner list of vertices and faces: part of `describe_search`.

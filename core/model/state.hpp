@@ -148,15 +148,13 @@ struct OuterList {
   Real lookahead_time = 0, built_time = 0;  // how long it holds at most, and from when  [s]
   Real least_skin = 0.001;                  // of a node, in parts of L; follows how long it lasts
   bool skin_exceeded = false;               // a node left its skin: the list is too old
-  Column<Index> slot_first, slot_faces;     // by slot: exposed faces that the vertex may touch
-  Column<Index> slot_pairs;                 // and the pairs of vertex and face that they are of
+  Column<Index> slot_first, slot_pairs;     // by slot: pairs of vertex and face, by the face
   Column<Index> vf_pairs;                   // [2][pair] node, exposed face
   Column<float> vf_bounds;                  // [6][pair] see MarkNearFaces
   Column<Index> ee_pairs, ee_codes;         // [2][pair], [pair], see ListedEdges
-  Column<Index> ee_sides;                   // [edge][2] the same
+  Column<Index> ee_sides, ee_edges;         // [edge][2], [edge] the same
   Column<float> ee_bounds;                  // [6][pair] see MarkNearEdges
   Column<Index> edge_first, edge_pairs;     // by edge of the mesh, see PairsOfEdges
-  Column<Index> edge_others;                // the same
   Column<Real> rotation_soon;               // [exposed] see ListedFaces
   Column<Index> acting_first, faces_acting_on;    // by face: those whose contacts may act on it,
                                                   // where a law asks for areas, else empty

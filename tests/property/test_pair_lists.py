@@ -84,7 +84,8 @@ class Lists:
         slots = np.flatnonzero((target >= 0) & (s["spring.rim_action"] == 0))
         touching = pairs(slots, target[slots])
         inner = ragged(r["inner.first"], r["inner.candidate"])
-        outer = ragged(s["outer.slot_first"], s["outer.slot_faces"])
+        face = s["outer.vf_pairs"].reshape(2, -1)[1]
+        outer = ragged(s["outer.slot_first"], face[s["outer.slot_pairs"]])
         return touching, inner, outer
 
     def edge_edges(self):

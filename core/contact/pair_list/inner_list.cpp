@@ -52,13 +52,13 @@ void prune_vertex_faces(const Model& m, State& s, Queue q) {
                               .motion = inner.motion.data()});
   const Index count = Index(search.exposed_face.size()), slots = 4 * count;
   const ListedFaces listed{.first = search.outer.slot_first.data(),
-                           .other = search.outer.slot_faces.data(),
                            .pair = search.outer.slot_pairs.data(),
+                           .face_of = search.outer.vf_pairs.data() + stride,
                            .room = {search.outer.vf_bounds.data(), stride},
                            .near = inner.faces.data(),
                            .motion = inner.motion.data(),
                            .rotation = search.outer.rotation_soon.data()};
-  inner.candidates.renew(search.outer.slot_faces.size());
+  inner.candidates.renew(search.outer.slot_pairs.size());
   set_all(q, Index(inner.candidates.size()), inner.candidates.data(), Flag(0));
   for_each_selected(q, count,
                     MarkInnerFaces{.faces = face_columns(m, s),
@@ -101,7 +101,7 @@ void prune_edges(const Model& m, State& s, Queue q) {
                               .near = inner.edges.data()});
   const PairsOfEdges of_edges{.first = search.outer.edge_first.data(),
                               .listed = search.outer.edge_pairs.data(),
-                              .other = search.outer.edge_others.data()};
+                              .edges = edges_of_pairs(search.outer)};
   if (pairs > 0)
     for_each_item(q, Index(s.edges.contact.size() / 4),
                   MarkHeldEdges{.exposed_face = search.exposed_face.data(),
@@ -111,11 +111,10 @@ void prune_edges(const Model& m, State& s, Queue q) {
                                 .near = inner.edges.data()});
   const IsNear near{inner.edges.data()};
   select_items(q, pairs, near, inner.near_edges);
-  for_each_item(q, Index(inner.near_edges.size()),
-                JoinPairsOfEdges{.listed = inner.near_edges.data(),
-                                 .edges = edges_of_pairs(m, search),
-                                 .pairs = of_edges,
-                                 .near = inner.edges.data()});
+  for_each_item(
+      q, Index(inner.near_edges.size()),
+      JoinPairsOfEdges{
+          .listed = inner.near_edges.data(), .pairs = of_edges, .near = inner.edges.data()});
   select_items(q, pairs, near, inner.near_edges);
   const Index count = Index(inner.near_edges.size());
   const Index near_stride = padded_stride(count);
@@ -129,8 +128,7 @@ void prune_edges(const Model& m, State& s, Queue q) {
   for_each_item(q, count,
                 CopyInnerEdges{.near = inner.near_edges.data(),
                                .listed = listed,
-                               .exposed_face = search.exposed_face.data(),
-                               .face_edges = m.face_edges.data(),
+                               .edge_of = search.outer.ee_edges.data(),
                                .ends = inner.edge_ends.data(),
                                .sides = inner.edge_sides.data(),
                                .codes = inner.edge_codes.data(),

@@ -17,8 +17,8 @@ namespace {
 /// Give the memory of the list before back.
 void drop(OuterList& outer) {
   for (Column<Index>* indices :
-       {&outer.vf_pairs, &outer.ee_pairs, &outer.ee_codes, &outer.slot_faces, &outer.slot_pairs,
-        &outer.edge_pairs, &outer.edge_others, &outer.acting_first, &outer.faces_acting_on})
+       {&outer.vf_pairs, &outer.ee_pairs, &outer.ee_codes, &outer.slot_pairs, &outer.edge_pairs,
+        &outer.acting_first, &outer.faces_acting_on})
     *indices = {};
   for (Column<float>* bounds : {&outer.vf_bounds, &outer.ee_bounds}) *bounds = {};
 }
@@ -52,10 +52,7 @@ void list_vertex_faces(const PairContext& f, PairSearch& search, SearchState& s,
   const Index listed = Index(candidates.size()), slots = 4 * Index(s.exposed_face.size());
   list_rows(q, listed, listed, slots, RowOfCandidate{candidates.data()}, outer.slot_first,
             outer.slot_pairs);
-  outer.slot_faces.renew(listed);
-  for_each_item(
-      q, listed,
-      WriteSlotFaces{candidates.data(), outer.slot_pairs.data(), outer.slot_faces.data()});
+  for_each_item(q, listed, WriteSlotPairs{candidates.data(), outer.slot_pairs.data()});
 }
 
 /// List the pairs of edges, and for every edge of the mesh those with edges of higher numbers.
@@ -76,13 +73,17 @@ void list_edge_pairs(const Model& m, const PairContext& f, PairSearch& search, S
                                .room = outer.ee_bounds.data(),
                                .alone = runs_alone()});
   outer.ee_sides.swap(search.edge_sides);
+  const Index edges = Index(outer.ee_sides.size() / 2);
+  outer.ee_edges.renew(edges);
+  for_each_item(q, edges,
+                FindEdges{.sides = outer.ee_sides.data(),
+                          .exposed_face = s.exposed_face.data(),
+                          .face_edges = m.face_edges.data(),
+                          .edges = outer.ee_edges.data()});
   outer.edge_first.resize(0);
-  outer.edge_others.renew(count);
   if (count == 0) return outer.edge_pairs.renew(0);
-  const EdgesOfPairs edges = edges_of_pairs(m, s);
-  list_rows(q, count, count, Index(m.edge_nodes.size() / 2), RowOfEdges{edges}, outer.edge_first,
-            outer.edge_pairs);
-  for_each_item(q, count, SetOtherEdge{edges, outer.edge_pairs.data(), outer.edge_others.data()});
+  list_rows(q, count, count, Index(m.edge_nodes.size() / 2), RowOfEdges{edges_of_pairs(outer)},
+            outer.edge_first, outer.edge_pairs);
 }
 
 /// Mark the exposed faces on the lists, and find the stiffest contact that each may have.

@@ -95,12 +95,14 @@ struct MarkNearFaces {
 /// Faces that a vertex of an exposed face may touch before the next rebuild: ragged rows.
 struct ListedFaces {
   const Index* first;    // [4 * exposed + 1], slot = 4 * exposed face + vertex
-  const Index* other;    // exposed face, ascending in a row
-  const Index* pair;     // pair of vertex and face
+  const Index* pair;     // pair of vertex and face, by ascending face in a row
+  const Index* face_of;  // [pair] exposed face
   InBounds room;         // [6][pair] see MarkNearFaces
   const Flag* near;      // [pair] the same
   const Real* motion;    // [pair] the same
   const Real* rotation;  // [exposed] how much its normal may soon rotate  [rad]
+
+  CDEM_HD Index face(Index c) const { return face_of[pair[c]]; }
 };
 
 /// Of the faces that are near a vertex, mark those on which a semi-spring may soon go on or begin:
@@ -118,7 +120,7 @@ struct MarkInnerFaces {
   template <class I>
   CDEM_HD void operator()(const I& item) const {
     using T = Number<I>;
-    const auto t = look_up(listed.other, item.id);
+    const auto t = indices_of([&](Index c) { return listed.face(c); }, item.id);
     const auto node = indices_of(
         [&](Index m, Index c) { return geometry.table[m].corner[vertex_of(listed.first, m, c)]; },
         item.row, item.id);
@@ -181,7 +183,7 @@ struct ListInnerFaces {
     for (Index c = listed.first[slot.i]; c < listed.first[slot.i + 1]; ++c) {
       if (!close[c]) continue;
       rises[place] = listed.room.at(3, One{listed.pair[c]}) > 0;
-      other[place++] = listed.other[c];
+      other[place++] = listed.face(c);
     }
   }
 };
@@ -288,15 +290,11 @@ struct MarkNearEdges {
 
 /// Pairs of edges of the outer list, and the edges of the mesh that they are of.
 struct EdgesOfPairs {
-  InIndices of;  // see ListedEdges
-  const Index* sides;
-  const Index* exposed_face;
-  const Index* face_edges;  // see FaceColumns
+  InIndices of;        // see ListedEdges
+  const Index* sides;  // the same
+  const Index* edges;  // [edge] of the mesh
 
-  CDEM_HD Index edge(Index pair, Index which) const {
-    const Index side = sides[2 * of.at(which, One{pair})];
-    return face_edges[4 * exposed_face[side / 4] + side % 4];
-  }
+  CDEM_HD Index edge(Index pair, Index which) const { return edges[of.at(which, One{pair})]; }
   /// Do faces of one element alone meet at the edge?
   CDEM_HD bool is_of_one(Index pair, Index which) const {
     return sides[2 * of.at(which, One{pair}) + 1] >= 0;
@@ -314,30 +312,20 @@ struct RowOfEdges {
   }
 };
 
-/// The other edge of the pairs in it.
-struct SetOtherEdge {
-  EdgesOfPairs edges;
-  const Index* listed;
-  Index* other;
-
-  CDEM_HD void operator()(One i) const {
-    const Index a = edges.edge(listed[i.i], 0), b = edges.edge(listed[i.i], 1);
-    other[i.i] = a < b ? b : a;
-  }
-};
-
 /// Pairs of edges by the edge of the lower number: ragged rows.
 struct PairsOfEdges {
   const Index* first;   // [edge + 1]
   const Index* listed;  // pair
-  const Index* other;   // the edge of the higher number
+  EdgesOfPairs edges;
 
   /// Visit the pairs of two edges.
   template <class Visit>
   CDEM_HD void each(Index a, Index b, const Visit& visit) const {
     const Index low = a < b ? a : b, high = a < b ? b : a;
-    for (Index i = first[low]; i < first[low + 1]; ++i)
-      if (other[i] == high) visit(listed[i]);
+    for (Index i = first[low]; i < first[low + 1]; ++i) {
+      const Index one = edges.edge(listed[i], 0);
+      if ((one == low ? edges.edge(listed[i], 1) : one) == high) visit(listed[i]);
+    }
   }
 };
 
@@ -361,11 +349,11 @@ struct MarkHeldEdges {
 /// the one that is near: all pairs of the same two edges are listed together.
 struct JoinPairsOfEdges {
   const Index* listed;  // pairs that are near
-  EdgesOfPairs edges;
   PairsOfEdges pairs;
   Flag* near;
 
   CDEM_HD void operator()(One i) const {
+    const EdgesOfPairs& edges = pairs.edges;
     const Index p = listed[i.i];
     if (edges.is_of_one(p, 0) && edges.is_of_one(p, 1)) return;
     pairs.each(edges.edge(p, 0), edges.edge(p, 1), [&](Index pair) { set(near[pair]); });
@@ -382,8 +370,7 @@ struct IsNear {
 struct CopyInnerEdges {
   const Index* near;  // [pair]
   ListedEdges listed;
-  const Index* exposed_face;
-  const Index* face_edges;              // see FaceColumns
+  const Index* edge_of;                 // [edge] of the mesh
   Index *ends, *sides, *codes, *edges;  // of EdgePairs
   Index stride;
 
@@ -399,7 +386,7 @@ struct CopyInnerEdges {
         code = EdgeWays::with_neighbours(code, e);
       else if (beside(of_edge[0]) >= 0 || of_edge[1] >= 0)
         code = EdgeWays::with_others(code);
-      edges[place(e, pair)] = face_edges[4 * exposed_face[of_edge[0] / 4] + of_edge[0] % 4];
+      edges[place(e, pair)] = edge_of[listed.of.at(e, from)];
       sides[place(2 * e + 1, pair)] = of_edge[1] >= 0 ? of_edge[1] : of_edge[0];
     }
     codes[pair.i] = code;

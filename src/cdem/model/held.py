@@ -37,7 +37,8 @@ def unheld_blocks(build: Build, out: NDArray[np.bool_]) -> NDArray[np.bool_]:
 
 def _exposed_pairs(core: Mapping[str, NDArray]) -> NDArray:
     """Pairs of exposed faces, one of each two elements at least, that the pair list names."""
-    slots = _pairs_of(core["outer.slot_first"], core["outer.slot_faces"])
+    vertex_face = core["outer.vf_pairs"].reshape(2, -1)[1]
+    slots = _pairs_of(core["outer.slot_first"], vertex_face[core["outer.slot_pairs"]])
     face = core["outer.ee_sides"][::2] // 4  # the first one at an edge
     edges = core["outer.ee_pairs"].reshape(2, -1)[:, : len(core["outer.ee_codes"])].T
     acting = _pairs_of(core["outer.acting_first"], core["outer.faces_acting_on"])
