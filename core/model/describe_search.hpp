@@ -79,7 +79,7 @@ void describe_outer_faces(OuterList& outer, Stored&& stored) {
          outer.vf_pairs);
   stored({.name = "outer.vf_bounds",
           .unit = "m",
-          .meaning = "how far apart they may be in contact, see MarkNearFaces",
+          .meaning = "how far apart they may be in contact, see MarkNearFaces and Short",
           .rows = "outer_vertex_faces",
           .numbers = 6,
           .layout = Layout::columns},
@@ -146,7 +146,7 @@ void describe_outer_edges(OuterList& outer, Stored&& stored) {
          outer.ee_codes);
   stored({.name = "outer.ee_bounds",
           .unit = "m",
-          .meaning = "how far apart a contact may begin, see MarkNearEdges",
+          .meaning = "how far apart a contact may begin, see MarkNearEdges and Short",
           .rows = "outer_edge_pairs",
           .numbers = 6,
           .layout = Layout::columns},

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/base/column.hpp"
+#include "core/base/short_numbers.hpp"
 #include "core/model/modules.hpp"
 #include "core/records/contact_records.hpp"
 #include "core/records/pair_status.hpp"
@@ -150,10 +151,10 @@ struct OuterList {
   bool skin_exceeded = false;               // a node left its skin: the list is too old
   Column<Index> slot_first, slot_pairs;     // by slot: pairs of vertex and face, by the face
   Column<Index> vf_pairs;                   // [2][pair] node, exposed face
-  Column<float> vf_bounds;                  // [6][pair] see MarkNearFaces
+  Column<Short> vf_bounds;                  // [6][pair] see MarkNearFaces
   Column<Index> ee_pairs, ee_codes;         // [2][pair], [pair], see ListedEdges
   Column<Index> ee_sides, ee_edges;         // [edge][2], [edge] the same
-  Column<float> ee_bounds;                  // [6][pair] see MarkNearEdges
+  Column<Short> ee_bounds;                  // [6][pair] see MarkNearEdges
   Column<Index> edge_first, edge_pairs;     // by edge of the mesh, see PairsOfEdges
   Column<Real> rotation_soon;               // [exposed] see ListedFaces
   Column<Index> acting_first, faces_acting_on;    // by face: those whose contacts may act on it,

@@ -20,11 +20,11 @@ void drop(OuterList& outer) {
        {&outer.vf_pairs, &outer.ee_pairs, &outer.ee_codes, &outer.slot_pairs, &outer.edge_pairs,
         &outer.acting_first, &outer.faces_acting_on})
     *indices = {};
-  for (Column<float>* bounds : {&outer.vf_bounds, &outer.ee_bounds}) *bounds = {};
+  for (Column<Short>* bounds : {&outer.vf_bounds, &outer.ee_bounds}) *bounds = {};
 }
 
 /// Room for `count` pairs with two members and six bounds each; lanes go on past the last.
-Index make_room(Queue q, Index count, Column<Index>& of, Column<float>& room) {
+Index make_room(Queue q, Index count, Column<Index>& of, Column<Short>& room) {
   const Index stride = padded_stride(count);
   of.renew(2 * std::size_t(stride));
   room.renew(6 * std::size_t(stride));

@@ -5,6 +5,7 @@
 #pragma once
 
 #include "core/base/parallel.hpp"
+#include "core/base/short_numbers.hpp"
 #include "core/contact/broad_phase/predicted_node.hpp"
 #include "core/contact/narrow_phase/contact_columns.hpp"
 #include "core/contact/narrow_phase/edge_pair.hpp"
