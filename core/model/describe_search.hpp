@@ -193,7 +193,7 @@ void describe_inner_faces(InnerList& inner, Rebuilt&& rebuilt) {
   rebuilt("prune_pair_list",
           {.name = "inner.motion",
            .unit = "m",
-           .meaning = "how far the vertex may soon move as seen from the face",
+           .meaning = "how far the vertex may soon move as seen from the face, see Short",
            .rows = "outer_vertex_faces"},
           inner.motion);
   rebuilt("prune_pair_list",

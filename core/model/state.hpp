@@ -170,7 +170,7 @@ struct InnerList {
   bool known = false;  // made since the outer list was
   Real built_time = 0;
   Column<Real> predicted, skin;  // rows of 8, see PredictedNode; [node]  [m]
-  Column<Real> motion;           // [outer pair] see MarkNearFaces
+  Column<Short> motion;          // [outer pair] see MarkNearFaces
   Column<Flag> faces, edges;     // [outer pair] are they near?
   Column<Flag> candidates;       // [outer slot face] is it near?
   Column<Index> first, count;    // by slot

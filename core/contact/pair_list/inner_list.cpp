@@ -56,7 +56,7 @@ void prune_vertex_faces(const Model& m, State& s, Queue q) {
                            .face_of = search.outer.vf_pairs.data() + stride,
                            .room = {search.outer.vf_bounds.data(), stride},
                            .near = inner.faces.data(),
-                           .motion = inner.motion.data(),
+                           .motion = {inner.motion.data(), stride},
                            .rotation = search.outer.rotation_soon.data()};
   inner.candidates.renew(search.outer.slot_pairs.size());
   set_all(q, Index(inner.candidates.size()), inner.candidates.data(), Flag(0));

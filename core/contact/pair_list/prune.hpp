@@ -52,7 +52,7 @@ struct MarkNearFaces {
   const Real* rotation;  // [exposed] how much its normal may soon rotate  [rad]
   const Real* skin;      // [node]  [m]
   Flag* near;
-  Real* motion;  // [pair] how far the vertex may soon move as seen from the face  [m]
+  Short* motion;  // [pair] how far the vertex may soon move as seen from the face  [m]
 
   template <class I>
   CDEM_HD void operator()(I p) const {
@@ -69,7 +69,7 @@ struct MarkNearFaces {
     const auto skin_at = [&](Index k) { return look_up(skin, corners.node[k]); };
     const T skins = look_up(skin, vertex) +
                     max_of(max_of(skin_at(0), skin_at(1)), max_of(skin_at(2), skin_at(3)));
-    store(motion, p, room.at(5, p) + skins);
+    store(motion, p, round_up(room.at(5, p) + skins));
     const T most = select(below, room.at(1, p), room.at(0, p)) + skins;
     // how far a point above the face moves along it as the face rotates
     const T along = T(2.0) * look_up(rotation, face) * (sqrt_of(gap2 / n2) + room.at(5, p) + skins);
@@ -100,7 +100,7 @@ struct ListedFaces {
   const Index* face_of;  // [pair] exposed face
   InBounds room;         // [6][pair] see MarkNearFaces
   const Flag* near;      // [pair] the same
-  const Real* motion;    // [pair] the same
+  InBounds motion;       // [pair] the same
   const Real* rotation;  // [exposed] how much its normal may soon rotate  [rad]
 
   CDEM_HD Index face(Index c) const { return face_of[pair[c]]; }
@@ -128,7 +128,8 @@ struct MarkInnerFaces {
     const auto c = VertexFace<T>::at(faces, geometry, rules, item.row, node, t);
     const T rotations = look_up(listed.rotation, item.row) + look_up(listed.rotation, t);
     const auto opposes = dot(geometry.normal(item.row), c.normal) < rotations - T(rules.opposing);
-    const T motion = numbers_of([&](Index x) { return listed.motion[listed.pair[x]]; }, item.id);
+    const T motion =
+        numbers_of([&](Index x) { return listed.motion.at(0, One{listed.pair[x]}); }, item.id);
     const T zero(0.0), plane = dot(c.normal, c.v - c.center);
     const T above = select(c.target_length > zero, zero, T(-0.5) * c.target_length) + motion;
     const T along = T(2.0) * look_up(listed.rotation, t) * (abs_of(plane) + motion);
