@@ -26,6 +26,9 @@ template void for_each_item(Queue, Index, const SortByOther&);
 template void keep_items(Queue, const FindMeetingParts&, Column<PatchPair>&);
 template void list_items(Queue, Index, const ListVertexFaces&, Column<VertexFaceItem>&);
 template void keep_items(Queue, const VertexMayTouch&, Column<VertexFaceItem>&);
+template void for_each_item(Queue, Index, const CopyItems<PatchPair>&);
+template void for_each_item(Queue, Index, const CopyItems<VertexFaceItem>&);
+template void for_each_item(Queue, Index, const CopyItems<EdgeItem>&);
 template void for_each_item(Queue, Index, const WriteVertexFaces&);
 template void list_items(Queue, Index, const ListSemiSprings&, Column<Candidate>&);
 template void list_rows(Queue, Index, Index, Index, const RowOfCandidate&, Column<Index>&,

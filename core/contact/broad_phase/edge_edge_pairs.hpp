@@ -34,10 +34,12 @@ struct ListEdgesOfPatches {
   PairContext f;
   const PatchPair* pairs;
   const MovingEdge* moving;
+  Index first = 0;  // pair of row 0
 
   template <class Act>
-  CDEM_HD void visit(One place, const Act& act) const {
-    const PatchPair& pair = pairs[place.i];
+  CDEM_HD void visit(One row, const Act& act) const {
+    const Index place = first + row.i;
+    const PatchPair& pair = pairs[place];
     const Patch &a = f.patches[pair.one], &b = f.patches[pair.other];
     Index at_b[12];  // faces at an edge of the second, as bits
     for (Index g = 0; g < b.edge_count; ++g)
@@ -47,7 +49,7 @@ struct ListEdgesOfPatches {
       for (Index g = 0; across && g < b.edge_count; ++g)
         if (across & at_b[g])
           act(EdgeItem{
-              .pair = place.i, .ways = 0, .one = unsigned(e), .other = unsigned(g), .sides = 0});
+              .pair = place, .ways = 0, .one = unsigned(e), .other = unsigned(g), .sides = 0});
     }
   }
 

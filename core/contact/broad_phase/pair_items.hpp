@@ -25,6 +25,14 @@ struct EdgeItem {
   bool operator==(const EdgeItem&) const = default;
 };
 
+/// Copy a list.
+template <class Item>
+struct CopyItems {
+  const Item* from;
+  Item* to;
+  CDEM_HD void operator()(One i) const { to[i.i] = from[i.i]; }
+};
+
 /// A vertex of a mother face on another exposed face, and the pair of vertex and face.
 struct Candidate {
   Index slot, face, pair;

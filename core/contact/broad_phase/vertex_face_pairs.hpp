@@ -39,10 +39,12 @@ struct VertexAndFace {
 struct ListVertexFaces {
   PairContext f;
   const PatchPair* pairs;
+  Index first = 0;  // pair of row 0
 
   template <class Act>
-  CDEM_HD void visit(One place, const Act& act) const {
-    const PatchPair& pair = pairs[place.i];
+  CDEM_HD void visit(One row, const Act& act) const {
+    const Index place = first + row.i;
+    const PatchPair& pair = pairs[place];
     for (Index of = 0; of < 2; ++of) {
       const Patch &a = f.patches[of == 0 ? pair.one : pair.other],
                   &b = f.patches[of == 0 ? pair.other : pair.one];
@@ -55,7 +57,7 @@ struct ListVertexFaces {
           for (Index i = 0; i < a.face_count; ++i)
             mothers |= (meets >> i & 1 && a.corner[v][i] >= 0) << i;
           if (mothers)
-            act(VertexFaceItem{.pair = place.i,
+            act(VertexFaceItem{.pair = place,
                                .mothers = unsigned(mothers),
                                .of = unsigned(of),
                                .face = unsigned(j),
