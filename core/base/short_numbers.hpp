@@ -16,7 +16,8 @@ using Short = std::uint16_t;
 template <class T>
 CDEM_HD inline T round_up(const T& number) {
   constexpr std::int64_t last = std::int64_t(1) << 45;  // the last bit that is kept
-  const T least(Real(std::numeric_limits<float>::min())), zero(0.0);
+  constexpr Real smallest = std::numeric_limits<float>::min();
+  const T least(smallest), zero(0.0);
   const T small = select(number > zero, least, zero);
   const T normal = select(abs_of(number) < least, small, number);
   const T cut = number_of(bits_of(normal) & -last);

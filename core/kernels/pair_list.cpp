@@ -5,6 +5,7 @@
 #include "core/contact/broad_phase/exceeds_skin.hpp"
 #include "core/contact/broad_phase/exposed_patches.hpp"
 #include "core/contact/broad_phase/patch_pairs.hpp"
+#include "core/contact/force/stiffness_sums.hpp"
 #include "core/contact/pair_list/outer_faces.hpp"
 #include "core/contact/pair_list/prune.hpp"
 
@@ -40,7 +41,7 @@ template void list_items(Queue, Index, const ListEdgesOfPatches&, Column<EdgeIte
 template void keep_items(Queue, const EdgesMayTouch&, Column<EdgeItem>&);
 template void for_each_item(Queue, Index, const WriteEdgePairs&);
 template void list_items(Queue, Index, const ListFacePairs&, Column<FacePair>&);
-template void for_each_item(Queue, Index, const MarkListedFaces&);
+template void for_each_item(Queue, Index, const MarkListedFaces<ListFacePairs>&);
 template void list_rows(Queue, Index, Index, Index, const RowOfActingFace&, Column<Index>&,
                         Column<Index>&);
 template void for_each_item(Queue, Index, const WriteActingFaces&);

@@ -2,8 +2,7 @@
 #include "core/contact/force/stiffness_bound.hpp"
 
 #include "core/base/primitives.hpp"
-#include "core/contact/force/views.hpp"
-#include "core/contact/geometry/views.hpp"
+#include "core/contact/force/stiffness_sums.hpp"
 #include "core/model/force_sets.hpp"
 
 namespace cdem {
@@ -55,10 +54,6 @@ void sum_bond_stiffness(const Model& m, State& s) {
                                  .corner = s.nodes.corner.data(),
                                  .sum = s.node_bonds.data()});
   add_modules(m, s);
-}
-
-StiffnessOfFaces stiffness_of_faces(const Model& m, const State& s) {
-  return {contact_laws(m, s), face_geometry(s)};
 }
 
 void sum_contact_stiffness(const Model& m, State& s, const Column<Real>& stiffest) {

@@ -1,7 +1,6 @@
 // stiffness_bound.hpp - the stiffness that bonds and contacts put on each node at most.
 #pragma once
 
-#include "core/contact/force/stiffness_sums.hpp"
 #include "core/model/model.hpp"
 #include "core/model/state.hpp"
 
@@ -9,8 +8,6 @@ namespace cdem {
 
 /// Sum the stiffness of live bonds and modules on each node. Needs the lists of corners.
 void sum_bond_stiffness(const Model& model, State& state);
-
-StiffnessOfFaces stiffness_of_faces(const Model& model, const State& state);
 
 /// Sum the largest stiffness of contacts of the exposed faces of each node before the next rebuild
 /// of the pair list: of each face the stiffest, see list_candidates. Needs the lists of contact

@@ -46,14 +46,33 @@ struct SumBondStiffness {
   }
 };
 
-/// Stiffness of a contact that a mother face may have with another one, at most.
-struct StiffnessOfFaces {
+/// Mark the faces on lists, and find the stiffest contact that each may have:
+/// `pairs.visit(item, act)` calls act for pairs of a mother and a face.
+template <class Pairs>
+struct MarkListedFaces {
+  Pairs pairs;
   ContactLaws laws;
   FaceGeometry geometry;
+  bool alone;      // see raise_to
+  Flag* listed;    // [exposed] initially 0
+  Real* stiffest;  // [exposed] initially 0  [N/m]
 
-  CDEM_HD Real operator()(Index mother, Index face) const {
-    const Index interface = laws.between(geometry, mother, face);
-    const auto spring = laws.spring(geometry, interface, mother, face);
+  CDEM_HD void operator()(One item) const {
+    pairs.visit(item, [&](const auto& of) {
+      const Real one = stiffness(of.mother, of.face);
+      learn(of.mother, one);
+      learn(of.face, one);
+    });
+  }
+
+ private:
+  CDEM_HD void learn(Index face, Real one) const {
+    set(listed[face]);
+    raise_to(stiffest[face], one, alone);
+  }
+  CDEM_HD Real stiffness(Index x, Index y) const {
+    const Index interface = laws.between(geometry, x, y);
+    const auto spring = laws.spring(geometry, interface, x, y);
     const Real most = HystereticUnloading<Real>::of(laws, interface).stiffness(spring);
     // the rotation springs of four vertices, see UpdateRollingCouples
     const bool rolls = laws.interfaces.interfaces[interface].rolling_resistance > 0;

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "core/contact/broad_phase/vertex_face_pairs.hpp"
-#include "core/contact/force/stiffness_sums.hpp"
 
 namespace cdem {
 
@@ -25,29 +24,6 @@ struct ListFacePairs {
         if (pair.listed[0] & PatchPair::bit(i, j)) act(FacePair{a.face[i], b.face[j]});
         if (pair.listed[1] & PatchPair::bit(j, i)) act(FacePair{b.face[j], a.face[i]});
       }
-  }
-};
-
-/// Mark the faces on the lists of two patches, and find the stiffest contact that each may have.
-struct MarkListedFaces {
-  ListFacePairs listed_by;
-  StiffnessOfFaces stiffness;
-  bool alone;      // see raise_to
-  Flag* listed;    // [exposed] initially 0
-  Real* stiffest;  // [exposed] initially 0  [N/m]
-
-  CDEM_HD void operator()(One place) const {
-    listed_by.visit(place, [&](const FacePair& of) {
-      const Real one = stiffness(of.mother, of.face);
-      learn(of.mother, one);
-      learn(of.face, one);
-    });
-  }
-
- private:
-  CDEM_HD void learn(Index face, Real one) const {
-    set(listed[face]);
-    raise_to(stiffest[face], one, alone);
   }
 };
 

@@ -6,7 +6,9 @@
 #include "core/contact/broad_phase/exposed_patches.hpp"
 #include "core/contact/broad_phase/pair_search.hpp"
 #include "core/contact/broad_phase/predicted_motion.hpp"
-#include "core/contact/force/stiffness_bound.hpp"
+#include "core/contact/force/stiffness_sums.hpp"
+#include "core/contact/force/views.hpp"
+#include "core/contact/geometry/views.hpp"
 #include "core/contact/pair_list/outer_faces.hpp"
 #include "core/contact/pair_list/views.hpp"
 
@@ -95,12 +97,14 @@ Column<Real> mark_listed_faces(const Model& m, const PairSearch& search, State& 
   set_all(q, faces, stiffest.data(), Real(0));
   listed.renew(faces);
   set_all(q, faces, listed.data(), Flag(0));
-  for_each_item(q, Index(search.pairs.size()),
-                MarkListedFaces{.listed_by = {search.patches.data(), search.pairs.data()},
-                                .stiffness = stiffness_of_faces(m, s),
-                                .alone = runs_alone(),
-                                .listed = listed.data(),
-                                .stiffest = stiffest.data()});
+  for_each_item(
+      q, Index(search.pairs.size()),
+      MarkListedFaces<ListFacePairs>{.pairs = {search.patches.data(), search.pairs.data()},
+                                     .laws = contact_laws(m, s),
+                                     .geometry = face_geometry(s),
+                                     .alone = runs_alone(),
+                                     .listed = listed.data(),
+                                     .stiffest = stiffest.data()});
   return stiffest;
 }
 
