@@ -1,7 +1,7 @@
 // short_numbers.hpp - bounds in 16 bits, rounded to the side that a test allows.
 #pragma once
 
-#include <limits>
+#include <cfloat>
 
 #include "core/base/lanes.hpp"
 
@@ -16,7 +16,7 @@ using Short = std::uint16_t;
 template <class T>
 CDEM_HD inline T round_up(const T& number) {
   constexpr std::int64_t last = std::int64_t(1) << 45;  // the last bit that is kept
-  constexpr Real smallest = std::numeric_limits<float>::min();
+  constexpr Real smallest = FLT_MIN;
   const T least(smallest), zero(0.0);
   const T small = select(number > zero, least, zero);
   const T normal = select(abs_of(number) < least, small, number);
