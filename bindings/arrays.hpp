@@ -70,7 +70,7 @@ inline void copy(nb::handle, Column<ExposedRow>&) { throw nb::type_error("rows o
 /// One array of model or state, whatever its numbers are.
 struct ArrayEntry {
   ColumnInfo info;
-  std::variant<Column<Real>*, Column<Index>*, Column<Flag>*, Column<float>*, Column<ExposedRow>*>
+  std::variant<Column<Real>*, Column<Index>*, Column<Flag>*, Column<Short>*, Column<ExposedRow>*>
       column;
   const char* origin;           ///< "given", "stored" or "rebuilt"
   const char* rebuilt_by = "";  ///< Name of what rebuilds it.

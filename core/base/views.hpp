@@ -26,23 +26,6 @@ struct InTable {
 #endif
 };
 
-/// The same of a table in single precision, half as long: of bounds that have room for its
-/// rounding.
-struct InBounds {
-  const float* data;
-  Index stride;
-  CDEM_HD Real at(Index row, One item) const {
-    return Real(data[std::size_t(row) * stride + item.i]);
-  }
-#if !defined(__CUDACC__)
-  Pack at(Index row, Lane item) const {
-    float __attribute__((vector_size(4 * CDEM_LANES))) short_numbers;
-    std::memcpy(&short_numbers, data + std::size_t(row) * stride + item.i, sizeof short_numbers);
-    return {__builtin_convertvector(short_numbers, Pack::Numbers)};
-  }
-#endif
-};
-
 /// Read and write view of a table.
 struct InOutTable {
   Real* data;

@@ -5,6 +5,7 @@
 #include "core/contact/broad_phase/exceeds_skin.hpp"
 #include "core/contact/broad_phase/exposed_patches.hpp"
 #include "core/contact/broad_phase/patch_pairs.hpp"
+#include "core/contact/force/stiffness_sums.hpp"
 #include "core/contact/pair_list/outer_faces.hpp"
 #include "core/contact/pair_list/prune.hpp"
 
@@ -26,17 +27,21 @@ template void for_each_item(Queue, Index, const SortByOther&);
 template void keep_items(Queue, const FindMeetingParts&, Column<PatchPair>&);
 template void list_items(Queue, Index, const ListVertexFaces&, Column<VertexFaceItem>&);
 template void keep_items(Queue, const VertexMayTouch&, Column<VertexFaceItem>&);
+template void copy_items(Queue, Index, const PatchPair*, PatchPair*);
+template void copy_items(Queue, Index, const VertexFaceItem*, VertexFaceItem*);
+template void copy_items(Queue, Index, const EdgeItem*, EdgeItem*);
 template void for_each_item(Queue, Index, const WriteVertexFaces&);
 template void list_items(Queue, Index, const ListSemiSprings&, Column<Candidate>&);
 template void list_rows(Queue, Index, Index, Index, const RowOfCandidate&, Column<Index>&,
                         Column<Index>&);
-template void for_each_item(Queue, Index, const WriteSlotFaces&);
+template void for_each_item(Queue, Index, const WriteSlotPairs&);
+template void for_each_item(Queue, Index, const FindEdges&);
 template void for_each_item(Queue, Index, const MakeMovingEdges&);
 template void list_items(Queue, Index, const ListEdgesOfPatches&, Column<EdgeItem>&);
 template void keep_items(Queue, const EdgesMayTouch&, Column<EdgeItem>&);
 template void for_each_item(Queue, Index, const WriteEdgePairs&);
 template void list_items(Queue, Index, const ListFacePairs&, Column<FacePair>&);
-template void for_each_item(Queue, Index, const MarkListedFaces&);
+template void for_each_item(Queue, Index, const MarkListedFaces<ListFacePairs>&);
 template void list_rows(Queue, Index, Index, Index, const RowOfActingFace&, Column<Index>&,
                         Column<Index>&);
 template void for_each_item(Queue, Index, const WriteActingFaces&);
@@ -50,7 +55,6 @@ template void for_each_lane(Queue, Index, const MarkNearEdges&);
 template void for_each_item(Queue, Index, const MarkHeldEdges&);
 template void for_each_item(Queue, Index, const JoinPairsOfEdges&);
 template void for_each_item(Queue, Index, const CopyInnerEdges&);
-template void for_each_item(Queue, Index, const SetOtherEdge&);
 template void list_rows(Queue, Index, Index, Index, const RowOfEdges&, Column<Index>&,
                         Column<Index>&);
 

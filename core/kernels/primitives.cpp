@@ -12,6 +12,7 @@ namespace cdem {
 template void set_all(Queue, Index, Flag*, Flag);
 template void set_all(Queue, Index, Index*, Index);
 template void set_all(Queue, Index, Real*, Real);
+template void copy_items(Queue, Index, const Flag*, Flag*);
 template void copy_items(Queue, Index, const Real*, Real*);
 template void select_items(Queue, Index, const IsSet&, Column<Index>&);
 template Real exact_sum(Queue, Index, const EachNumber<>&);

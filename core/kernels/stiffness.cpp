@@ -6,7 +6,6 @@
 namespace cdem {
 
 template void for_each_item(Queue, Index, const SumBondStiffness&);
-template void for_each_item(Queue, Index, const FindStiffestContacts&);
 template void for_each_item(Queue, Index, const SumContactStiffness&);
 
 }  // namespace cdem

@@ -64,13 +64,8 @@ void describe_outer_faces(OuterList& outer, Stored&& stored) {
           .layout = Layout::starts,
           .refers_to = {"outer_faces"}},
          outer.slot_first);
-  stored({.name = "outer.slot_faces",
-          .meaning = "exposed face that the vertex may touch",
-          .rows = "outer_faces",
-          .refers_to = {"exposed"}},
-         outer.slot_faces);
   stored({.name = "outer.slot_pairs",
-          .meaning = "pair of vertex and face that this is of",
+          .meaning = "pair of the vertex and a face that it may touch",
           .rows = "outer_faces",
           .refers_to = {"outer_vertex_faces"}},
          outer.slot_pairs);
@@ -84,16 +79,17 @@ void describe_outer_faces(OuterList& outer, Stored&& stored) {
          outer.vf_pairs);
   stored({.name = "outer.vf_bounds",
           .unit = "m",
-          .meaning = "how far apart they may be in contact, see MarkNearFaces",
+          .meaning = "how far apart they may be in contact, see MarkNearFaces and Short",
           .rows = "outer_vertex_faces",
           .numbers = 6,
           .layout = Layout::columns},
          outer.vf_bounds);
   stored({.name = "outer.acting_first",
-          .meaning = "faces whose contacts may act on a face",
+          .meaning = "faces whose contacts may act on a face, where a law asks for areas",
           .rows = "exposed",
           .layout = Layout::starts,
-          .refers_to = {"acting_faces"}},
+          .refers_to = {"acting_faces"},
+          .optional = true},
          outer.acting_first);
   stored({.name = "outer.faces_acting_on",
           .meaning = "exposed face whose contacts may act on it",
@@ -150,7 +146,7 @@ void describe_outer_edges(OuterList& outer, Stored&& stored) {
          outer.ee_codes);
   stored({.name = "outer.ee_bounds",
           .unit = "m",
-          .meaning = "how far apart a contact may begin, see MarkNearEdges",
+          .meaning = "how far apart a contact may begin, see MarkNearEdges and Short",
           .rows = "outer_edge_pairs",
           .numbers = 6,
           .layout = Layout::columns},
@@ -161,6 +157,11 @@ void describe_outer_edges(OuterList& outer, Stored&& stored) {
           .numbers = 2,
           .refers_to = {"slots"}},
          outer.ee_sides);
+  stored({.name = "outer.ee_edges",
+          .meaning = "the edge of the mesh that it is",
+          .rows = "outer_edges",
+          .refers_to = {"edges"}},
+         outer.ee_edges);
   stored({.name = "outer.edge_first",
           .meaning = "pairs of an edge with edges of higher numbers",
           .rows = "edges",
@@ -173,11 +174,6 @@ void describe_outer_edges(OuterList& outer, Stored&& stored) {
           .rows = "pairs_of_edges",
           .refers_to = {"outer_edge_pairs"}},
          outer.edge_pairs);
-  stored({.name = "outer.edge_others",
-          .meaning = "its other edge",
-          .rows = "pairs_of_edges",
-          .refers_to = {"edges"}},
-         outer.edge_others);
 }
 
 /// Inner list of vertices and faces: part of `describe_search`.
@@ -197,7 +193,7 @@ void describe_inner_faces(InnerList& inner, Rebuilt&& rebuilt) {
   rebuilt("prune_pair_list",
           {.name = "inner.motion",
            .unit = "m",
-           .meaning = "how far the vertex may soon move as seen from the face",
+           .meaning = "how far the vertex may soon move as seen from the face, see Short",
            .rows = "outer_vertex_faces"},
           inner.motion);
   rebuilt("prune_pair_list",

@@ -5,6 +5,7 @@
 
 #include "core/base/answer.hpp"
 #include "core/base/column.hpp"
+#include "core/base/short_numbers.hpp"
 #include "core/model/modules.hpp"
 #include "core/records/contact_records.hpp"
 #include "core/records/pair_status.hpp"
@@ -149,17 +150,16 @@ struct OuterList {
   Real lookahead_time = 0, built_time = 0;  // how long it holds at most, and from when  [s]
   Real least_skin = 0.001;                  // of a node, in parts of L; follows how long it lasts
   bool skin_exceeded = false;               // a node left its skin: the list is too old
-  Column<Index> slot_first, slot_faces;     // by slot: exposed faces that the vertex may touch
-  Column<Index> slot_pairs;                 // and the pairs of vertex and face that they are of
+  Column<Index> slot_first, slot_pairs;     // by slot: pairs of vertex and face, by the face
   Column<Index> vf_pairs;                   // [2][pair] node, exposed face
-  Column<float> vf_bounds;                  // [6][pair] see MarkNearFaces
+  Column<Short> vf_bounds;                  // [6][pair] see MarkNearFaces
   Column<Index> ee_pairs, ee_codes;         // [2][pair], [pair], see ListedEdges
-  Column<Index> ee_sides;                   // [edge][2] the same
-  Column<float> ee_bounds;                  // [6][pair] see MarkNearEdges
+  Column<Index> ee_sides, ee_edges;         // [edge][2], [edge] the same
+  Column<Short> ee_bounds;                  // [6][pair] see MarkNearEdges
   Column<Index> edge_first, edge_pairs;     // by edge of the mesh, see PairsOfEdges
-  Column<Index> edge_others;                // the same
   Column<Real> rotation_soon;               // [exposed] see ListedFaces
-  Column<Index> acting_first, faces_acting_on;    // by face: those whose contacts may act on it
+  Column<Index> acting_first, faces_acting_on;    // by face: those whose contacts may act on it,
+                                                  // where a law asks for areas, else empty
   Column<Flag> face_listed;                       // [exposed] may it act on any, or any on it?
   Column<Index> predicted_nodes, node_predicted;  // nodes of exposed faces; node -> place or -1
   Column<Real> predicted;                         // rows of 8 of theirs, see PredictedNode
@@ -172,7 +172,7 @@ struct InnerList {
   bool skin_exceeded = false;  // a node left its skin: the list is too old
   Real built_time = 0;
   Column<Real> predicted, skin;  // rows of 8, see PredictedNode; [node]  [m]
-  Column<Real> motion;           // [outer pair] see MarkNearFaces
+  Column<Short> motion;          // [outer pair] see MarkNearFaces
   Column<Flag> faces, edges;     // [outer pair] are they near?
   Column<Flag> candidates;       // [outer slot face] is it near?
   Column<Index> first, count;    // by slot
@@ -261,9 +261,14 @@ struct State {
   std::vector<Real> known_load_factor, known_velocity_factor;  // the same, for the host
 };
 
-/// Does the pair list name anything? Without it contacts only end, in the first step with it.
+/// Does a pair list name anything?
+inline bool names_pairs(const OuterList& outer) {
+  return outer.slot_pairs.size() > 0 || outer.ee_codes.size() > 0 ||
+         outer.faces_acting_on.size() > 0;
+}
+/// Does the present one? Without it contacts only end, in the first step with it.
 inline bool has_contact_pairs(const State& s) {
-  return s.search.outer.faces_acting_on.size() > 0 || s.built_step == s.step;
+  return names_pairs(s.search.outer) || s.built_step == s.step;
 }
 
 }  // namespace cdem

@@ -16,7 +16,7 @@ template <class Module, auto change>
 void change_items(const Model& m, State& s, const Flag* which) {
   change(given_of<Module>(m), state_of<Module>(s), which);
   list_corners(m, s);
-  sum_stiffness(m, s);
+  sum_bond_stiffness(m, s);
   list_awake_nodes(m, s);
   renew_step(m, s);
 }

@@ -84,7 +84,8 @@ class Lists:
         slots = np.flatnonzero((target >= 0) & (s["spring.rim_action"] == 0))
         touching = pairs(slots, target[slots])
         inner = ragged(r["inner.first"], r["inner.candidate"])
-        outer = ragged(s["outer.slot_first"], s["outer.slot_faces"])
+        face = s["outer.vf_pairs"].reshape(2, -1)[1]
+        outer = ragged(s["outer.slot_first"], face[s["outer.slot_pairs"]])
         return touching, inner, outer
 
     def edge_edges(self):
@@ -99,13 +100,12 @@ class Lists:
         return touching, self.unordered(sides[0], sides[2]), outer
 
     def faces(self):
-        """Target and mother face: in contact, and on the list of faces that may act on another."""
+        """Faces in contact, and faces that are listed."""
         s, contact = self.s, rows_of(self.core, "edge.contact")
         target = s["spring.target"]
         slots = np.flatnonzero(target >= 0)
-        touching = pairs(target[slots], slots // 4)
-        touching |= pairs(contact.target, contact.mother_side // 4)
-        return touching, ragged(s["outer.acting_first"], s["outer.faces_acting_on"])
+        faces = [target[slots], slots // 4, contact.target, contact.mother_side // 4]
+        return set(np.concatenate(faces)), set(np.flatnonzero(s["outer.face_listed"]))
 
 
 @pytest.mark.parametrize("shapes", list(combinations_with_replacement(SHAPES, 2)), ids="-".join)
@@ -123,7 +123,7 @@ def test_contacts_are_on_the_inner_list_and_that_on_the_outer(shapes, seed):
         touching, inner, outer = lists.edge_edges()
         edges += len(touching)
         assert touching <= inner <= outer
-        touching, acting = lists.faces()
-        assert touching <= acting
+        touching, listed = lists.faces()
+        assert touching <= listed
     assert springs > 100 and edges > 100
     assert sim.core.scalars()["rebuilds"] > 5

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/base/parallel.hpp"
+#include "core/base/short_numbers.hpp"
 #include "core/contact/broad_phase/moving_edge.hpp"
 #include "core/contact/broad_phase/pair_items.hpp"
 #include "core/records/contact_records.hpp"
@@ -33,10 +34,12 @@ struct ListEdgesOfPatches {
   PairContext f;
   const PatchPair* pairs;
   const MovingEdge* moving;
+  Index first = 0;  // pair of row 0
 
   template <class Act>
-  CDEM_HD void visit(One place, const Act& act) const {
-    const PatchPair& pair = pairs[place.i];
+  CDEM_HD void visit(One row, const Act& act) const {
+    const Index place = first + row.i;
+    const PatchPair& pair = pairs[place];
     const Patch &a = f.patches[pair.one], &b = f.patches[pair.other];
     Index at_b[12];  // faces at an edge of the second, as bits
     for (Index g = 0; g < b.edge_count; ++g)
@@ -46,7 +49,7 @@ struct ListEdgesOfPatches {
       for (Index g = 0; across && g < b.edge_count; ++g)
         if (across & at_b[g])
           act(EdgeItem{
-              .pair = place.i, .ways = 0, .one = unsigned(e), .other = unsigned(g), .sides = 0});
+              .pair = place, .ways = 0, .one = unsigned(e), .other = unsigned(g), .sides = 0});
     }
   }
 
@@ -142,7 +145,7 @@ struct WriteEdgePairs {
   const EdgeItem* items;
   Index stride;
   Index *of, *codes;  // [2][pair] places among the edges of all patches; [pair]
-  float* room;        // [6][pair]
+  Short* room;        // [6][pair]
   bool alone;         // see raise
 
   CDEM_HD void operator()(One place) const {
@@ -184,18 +187,18 @@ struct WriteEdgePairs {
     return sides;
   }
   CDEM_HD void write_room(const TwoPatchEdges& two, const EdgeItem& item, Index shared, bool turned,
-                          float* rooms) const {
+                          Short* rooms) const {
     const SearchRules& rules = f.rules;
     const Indented edges = two.p.indented.and_of(two.q.indented);
     // seen along the cross product of the two as their ends are listed here
     const Real sign = item.sides == 3 ? 0 : ((item.sides == 1) != turned ? 1 : -1);
-    const Real all[] = {1.000001 * rules.entry * min_of(two.a.length, two.b.length),
-                        edges.shift,
+    const Real all[] = {round_up(1.000001 * rules.entry * min_of(two.a.length, two.b.length)),
+                        round_up(edges.shift),
                         sign,
-                        edges.inset,
-                        shared ? 0.999999 * rules.indentation * edges.length : 0,
-                        ways_part_soon(two.p, two.q) + 1e-6 * edges.length};
-    for (Index k = 0; k < 6; ++k) rooms[std::size_t(k) * stride] = float(all[k]);
+                        round_down(edges.inset),
+                        round_down(shared ? 0.999999 * rules.indentation * edges.length : 0.0),
+                        round_up(ways_part_soon(two.p, two.q) + 1e-6 * edges.length)};
+    for (Index k = 0; k < 6; ++k) store(rooms + std::size_t(k) * stride, One{0}, all[k]);
   }
 };
 

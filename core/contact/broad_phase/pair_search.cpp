@@ -1,6 +1,9 @@
 // pair_search.cpp - see pair_search.hpp.
 #include "core/contact/broad_phase/pair_search.hpp"
 
+#include <algorithm>
+#include <vector>
+
 #include "core/base/primitives.hpp"
 #include "core/contact/broad_phase/edge_edge_pairs.hpp"
 #include "core/contact/broad_phase/exposed_patches.hpp"
@@ -29,6 +32,30 @@ ElementSurface element_surface(const Model& m, const State& s) {
           .edges = s.edges.state.data()};
 }
 
+/// List items in batches of rows, one after the other: `list(rows, items)` lists those of some
+/// rows.
+template <class Item, class List>
+void list_in_batches(Queue q, Index rows, Index at_once, Column<Item>& all, const List& list) {
+  std::vector<Column<Item>> batches;
+  std::size_t count = 0;
+  for (Index first = 0; first < rows; first += at_once) {
+    Column<Item> found;
+    list(Range{first, first + std::min(at_once, rows - first)}, found);
+    Column<Item>& kept = batches.emplace_back();
+    kept.renew(found.size());  // not longer than needed
+    copy_items(q, Index(found.size()), found.data(), kept.data());
+    count += found.size();
+  }
+  if (batches.size() == 1) return all.swap(batches[0]);
+  all.renew(count);
+  std::size_t place = 0;
+  for (Column<Item>& batch : batches) {
+    copy_items(q, Index(batch.size()), batch.data(), all.data() + place);
+    place += batch.size();
+    batch = {};
+  }
+}
+
 /// Pairs of patches, and their parts that may touch.
 void find_patch_pairs(const Model& m, const State& s, PairSearch& search) {
   const Queue q;
@@ -38,12 +65,16 @@ void find_patch_pairs(const Model& m, const State& s, PairSearch& search) {
   for_each_item(q, count, CopyBoxes{search.patches.data(), boxes.data()});
   BoxTreeColumns tree;
   tree.make(q, boxes);
-  list_items(q, count, ListPatchPairs{search.patches.data(), tree.tree()}, search.pairs);
   const PairContext f = pair_context(m, s, search);
-  keep_items(q, MayMeet{f}, search.pairs);
-  const Index pairs = Index(search.pairs.size());
-  for_each_item(q, pairs, SortByOther{search.pairs.data(), pairs});
-  keep_items(q, FindMeetingParts{f, m.interface_traits.ask_area}, search.pairs);
+  const auto list = [&](Range of, Column<PatchPair>& pairs) {
+    list_items(q, of.last - of.first, ListPatchPairs{search.patches.data(), tree.tree(), of.first},
+               pairs);
+    keep_items(q, MayMeet{f}, pairs);
+    const Index found = Index(pairs.size());
+    for_each_item(q, found, SortByOther{pairs.data(), found});
+    keep_items(q, FindMeetingParts{f, m.interface_traits.ask_area}, pairs);
+  };
+  list_in_batches(q, count, search.at_once, search.pairs, list);
 }
 
 }  // namespace
@@ -100,15 +131,22 @@ void search_pairs(const Model& m, const State& s, PairSearch& search) {
   search.bonded = live_overlaps(m, s);
   find_patch_pairs(m, s, search);
   const PairContext f = pair_context(m, s, search);
-  const Index pairs = Index(search.pairs.size());
-  list_items(q, pairs, ListVertexFaces{f, search.pairs.data()}, search.vertex_faces);
-  keep_items(q, VertexMayTouch{f, search.pairs.data()}, search.vertex_faces);
+  const PatchPair* const pairs = search.pairs.data();
+  const Index count = Index(search.pairs.size()), at_once = 16 * search.at_once;
+  list_in_batches(q, count, at_once, search.vertex_faces,
+                  [&](Range of, Column<VertexFaceItem>& items) {
+                    list_items(q, of.last - of.first, ListVertexFaces{f, pairs, of.first}, items);
+                    keep_items(q, VertexMayTouch{f, pairs}, items);
+                  });
   if (!m.semi_edges) return;
   search.moving.renew(search.edge_sides.size() / 2);
   MovingEdge* const moving = search.moving.data();
   for_each_item(q, Index(search.patches.size()), MakeMovingEdges{f, moving});
-  list_items(q, pairs, ListEdgesOfPatches{f, search.pairs.data(), moving}, search.edges);
-  keep_items(q, EdgesMayTouch{f, search.pairs.data(), moving}, search.edges);
+  list_in_batches(q, count, at_once, search.edges, [&](Range of, Column<EdgeItem>& items) {
+    const ListEdgesOfPatches list{.f = f, .pairs = pairs, .moving = moving, .first = of.first};
+    list_items(q, of.last - of.first, list, items);
+    keep_items(q, EdgesMayTouch{f, pairs, moving}, items);
+  });
 }
 
 }  // namespace cdem

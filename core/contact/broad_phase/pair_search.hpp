@@ -25,6 +25,10 @@ struct PairSearch {
   Column<VertexFaceItem> vertex_faces;
   Column<MovingEdge> moving;  // edges of all patches
   Column<EdgeItem> edges;
+
+  // What is listed before it is tested takes 7 kB a patch: so many are searched at once, and 16
+  // times as many pairs of patches. The lists do not depend on it.
+  Index at_once = 65536;
 };
 
 PairContext pair_context(const Model& model, const State& state, const PairSearch& search);

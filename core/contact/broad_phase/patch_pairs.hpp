@@ -11,16 +11,17 @@ namespace cdem {
 struct ListPatchPairs {
   const Patch* patches;
   BoxTree tree;
+  Index first = 0;  // patch of row 0
 
   template <class Act>
-  CDEM_HD void visit(One place, const Act& act) const {
-    const Patch& patch = patches[place.i];
+  CDEM_HD void visit(One row, const Act& act) const {
+    const Index one = first + row.i;
+    const Patch& patch = patches[one];
     if (!patch.movable) return;  // movable patches find it
     tree.query(patch.box, [&](Index q) {
       const Patch& other = patches[q];
-      if ((q > place.i || !other.movable) && patch.block != other.block)
-        act(PatchPair{
-            .one = place.i, .other = q, .edge = {}, .vertex = {}, .meets = 0, .listed = {}});
+      if ((q > one || !other.movable) && patch.block != other.block)
+        act(PatchPair{.one = one, .other = q, .edge = {}, .vertex = {}, .meets = 0, .listed = {}});
     });
   }
 };

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/base/parallel.hpp"
+#include "core/base/short_numbers.hpp"
 #include "core/contact/broad_phase/pair_items.hpp"
 #include "core/contact/broad_phase/separating_planes.hpp"
 
@@ -38,10 +39,12 @@ struct VertexAndFace {
 struct ListVertexFaces {
   PairContext f;
   const PatchPair* pairs;
+  Index first = 0;  // pair of row 0
 
   template <class Act>
-  CDEM_HD void visit(One place, const Act& act) const {
-    const PatchPair& pair = pairs[place.i];
+  CDEM_HD void visit(One row, const Act& act) const {
+    const Index place = first + row.i;
+    const PatchPair& pair = pairs[place];
     for (Index of = 0; of < 2; ++of) {
       const Patch &a = f.patches[of == 0 ? pair.one : pair.other],
                   &b = f.patches[of == 0 ? pair.other : pair.one];
@@ -54,7 +57,7 @@ struct ListVertexFaces {
           for (Index i = 0; i < a.face_count; ++i)
             mothers |= (meets >> i & 1 && a.corner[v][i] >= 0) << i;
           if (mothers)
-            act(VertexFaceItem{.pair = place.i,
+            act(VertexFaceItem{.pair = place,
                                .mothers = unsigned(mothers),
                                .of = unsigned(of),
                                .face = unsigned(j),
@@ -187,8 +190,7 @@ struct VertexMayTouch {
   }
 };
 
-/// Write the pairs of vertex and face, see MarkNearFaces, with room for single precision. Lists the
-/// faces that they are of.
+/// Write the pairs of vertex and face, see MarkNearFaces. Lists the faces that they are of.
 ///
 /// In contact the vertex is at a point of the face but for the depth and for `off` beside it, more
 /// behind a corner (or from the centre of a warped face), of which the rotation of the face changes
@@ -199,7 +201,7 @@ struct WriteVertexFaces {
   const VertexFaceItem* items;
   Index stride;
   Index* of;    // [2][pair]: node, exposed face
-  float* room;  // [6][pair]
+  Short* room;  // [6][pair]
   bool alone;   // see raise
 
   CDEM_HD void operator()(One place) const {
@@ -223,7 +225,7 @@ struct WriteVertexFaces {
 
  private:
   CDEM_HD void write_room(const VertexAndFace& at, Real indented, Real deviation,
-                          float* rooms) const {
+                          Short* rooms) const {
     const SearchRules& rules = f.rules;
     const ExposedFace& y = at.y();
     const Real length = at.length(), slack = 1e-6 * y.length;  // for round-off
@@ -247,7 +249,7 @@ struct WriteVertexFaces {
                         Real(behind),
                         reach + motion,
                         motion};
-    for (Index k = 0; k < 6; ++k) rooms[std::size_t(k) * stride] = float(all[k]);
+    for (Index k = 0; k < 6; ++k) store(rooms + std::size_t(k) * stride, One{0}, round_up(all[k]));
   }
 };
 

@@ -3,8 +3,6 @@
 
 #include "core/base/primitives.hpp"
 #include "core/contact/force/stiffness_sums.hpp"
-#include "core/contact/force/views.hpp"
-#include "core/contact/geometry/views.hpp"
 #include "core/model/force_sets.hpp"
 
 namespace cdem {
@@ -45,30 +43,10 @@ void add_modules(const Model& m, State& s) {
   });
 }
 
-void sum_contacts(const Model& m, State& s) {
-  const Index exposed = Index(s.search.exposed_face.size());
-  Column<Real> stiffest;
-  stiffest.renew(exposed);
-  set_all({}, exposed, stiffest.data(), Real(0));
-  for_each_item({}, exposed,
-                FindStiffestContacts{.laws = contact_laws(m, s),
-                                     .geometry = face_geometry(s),
-                                     .acting_first = s.search.outer.acting_first.data(),
-                                     .acting = s.search.outer.faces_acting_on.data(),
-                                     .alone = runs_alone(),
-                                     .stiffest = stiffest.data()});
-  for_each_item({}, m.node_count,
-                SumContactStiffness{.contact_first = s.search.contact_first.data(),
-                                    .contact_corner = s.search.contact_corner.data(),
-                                    .stiffest = stiffest.data(),
-                                    .sum = s.node_potential.data()});
-}
-
 }  // namespace
 
-void sum_stiffness(const Model& m, State& s) {
+void sum_bond_stiffness(const Model& m, State& s) {
   s.node_bonds.renew(m.node_count);
-  s.node_potential.renew(m.node_count);
   for_each_item({}, m.node_count,
                 SumBondStiffness{.sets = {stiffness_by_row(m.triangles), stiffness_by_row(m.quads),
                                           stiffness_by_row(m.overlaps)},
@@ -76,7 +54,15 @@ void sum_stiffness(const Model& m, State& s) {
                                  .corner = s.nodes.corner.data(),
                                  .sum = s.node_bonds.data()});
   add_modules(m, s);
-  sum_contacts(m, s);
+}
+
+void sum_contact_stiffness(const Model& m, State& s, const Column<Real>& stiffest) {
+  s.node_potential.renew(m.node_count);
+  for_each_item({}, m.node_count,
+                SumContactStiffness{.contact_first = s.search.contact_first.data(),
+                                    .contact_corner = s.search.contact_corner.data(),
+                                    .stiffest = stiffest.data(),
+                                    .sum = s.node_potential.data()});
 }
 
 }  // namespace cdem

@@ -6,8 +6,12 @@
 
 namespace cdem {
 
-/// Stiffness of live bonds on each node, and the largest stiffness of contacts of its exposed faces
-/// before the next rebuild of the pair list. Needs the lists of corners and of contact corners.
-void sum_stiffness(const Model& model, State& state);
+/// Sum the stiffness of live bonds and modules on each node. Needs the lists of corners.
+void sum_bond_stiffness(const Model& model, State& state);
+
+/// Sum the largest stiffness of contacts of the exposed faces of each node before the next rebuild
+/// of the pair list: of each face the stiffest, see list_candidates. Needs the lists of contact
+/// corners.
+void sum_contact_stiffness(const Model& model, State& state, const Column<Real>& stiffest);
 
 }  // namespace cdem

@@ -46,25 +46,30 @@ struct SumBondStiffness {
   }
 };
 
-/// The stiffest contact that a face may have with those that may act on it; either face learns it.
-struct FindStiffestContacts {
+/// Mark the faces on lists, and find the stiffest contact that each may have:
+/// `pairs.visit(item, act)` calls act for pairs of a mother and a face.
+template <class Pairs>
+struct MarkListedFaces {
+  Pairs pairs;
   ContactLaws laws;
   FaceGeometry geometry;
-  const Index *acting_first, *acting;  // [exposed + 1]
-  bool alone;                          // see raise_to
-  Real* stiffest;                      // [exposed], initially 0  [N/m]
+  bool alone;      // see raise_to
+  Flag* listed;    // [exposed] initially 0
+  Real* stiffest;  // [exposed] initially 0  [N/m]
 
-  CDEM_HD void operator()(One y) const {
-    Real own = 0;
-    for (Index c = acting_first[y.i]; c < acting_first[y.i + 1]; ++c) {
-      const Real one = stiffness(acting[c], y.i);
-      own = max_of(own, one);
-      raise_to(stiffest[acting[c]], one, alone);
-    }
-    raise_to(stiffest[y.i], own, alone);
+  CDEM_HD void operator()(One item) const {
+    pairs.visit(item, [&](const auto& of) {
+      const Real one = stiffness(of.mother, of.face);
+      learn(of.mother, one);
+      learn(of.face, one);
+    });
   }
 
  private:
+  CDEM_HD void learn(Index face, Real one) const {
+    set(listed[face]);
+    raise_to(stiffest[face], one, alone);
+  }
   CDEM_HD Real stiffness(Index x, Index y) const {
     const Index interface = laws.between(geometry, x, y);
     const auto spring = laws.spring(geometry, interface, x, y);
@@ -79,7 +84,7 @@ struct FindStiffestContacts {
 /// again for semi-edges.
 struct SumContactStiffness {
   const Index *contact_first, *contact_corner;  // [node + 1] slots of listed faces
-  const Real* stiffest;
+  const Real* stiffest;                         // [exposed]  [N/m]
   Real* sum;
 
   CDEM_HD void operator()(One node) const {

@@ -30,7 +30,19 @@ void predict_inner_motion(const Model& m, State& s, Queue q) {
   inner.skin_exceeded = false;
 }
 
-void prune_vertex_faces(const Model& m, State& s, Queue q) {
+ListedFaces listed_faces(const SearchState& search) {
+  const Index stride = Index(search.outer.vf_pairs.size() / 2);
+  return {.first = search.outer.slot_first.data(),
+          .pair = search.outer.slot_pairs.data(),
+          .face_of = search.outer.vf_pairs.data() + stride,
+          .room = {search.outer.vf_bounds.data(), stride},
+          .near = search.inner.faces.data(),
+          .motion = {search.inner.motion.data(), stride},
+          .rotation = search.outer.rotation_soon.data()};
+}
+
+/// Mark the faces that are near a vertex, and find how many they are.
+void mark_vertex_faces(const Model& m, State& s, Queue q, Answer<Index>& found) {
   SearchState& search = s.search;
   InnerList& inner = search.inner;
   const Index stride = Index(search.outer.vf_pairs.size() / 2), pairs = stride;
@@ -46,14 +58,8 @@ void prune_vertex_faces(const Model& m, State& s, Queue q) {
                               .near = inner.faces.data(),
                               .motion = inner.motion.data()});
   const Index count = Index(search.exposed_face.size()), slots = 4 * count;
-  const ListedFaces listed{.first = search.outer.slot_first.data(),
-                           .other = search.outer.slot_faces.data(),
-                           .pair = search.outer.slot_pairs.data(),
-                           .room = {search.outer.vf_bounds.data(), stride},
-                           .near = inner.faces.data(),
-                           .motion = inner.motion.data(),
-                           .rotation = search.outer.rotation_soon.data()};
-  inner.candidates.renew(search.outer.slot_faces.size());
+  const ListedFaces listed = listed_faces(search);
+  inner.candidates.renew(search.outer.slot_pairs.size());
   set_all(q, Index(inner.candidates.size()), inner.candidates.data(), Flag(0));
   for_each_selected(q, count,
                     MarkInnerFaces{.faces = face_columns(m, s),
@@ -65,12 +71,16 @@ void prune_vertex_faces(const Model& m, State& s, Queue q) {
   for_each_item(q, slots,
                 CountInnerFaces{listed.first, inner.candidates.data(), inner.count.data()});
   inner.first.renew(slots + 1);
-  const Index found = scan(q, slots, inner.count.data(), inner.first.data());
+  add_up(q, slots, inner.count.data(), inner.first.data(), found);
+}
+
+void list_vertex_faces(State& s, Queue q, Index found) {
+  InnerList& inner = s.search.inner;
   inner.candidate.renew(found);
   inner.rises.renew(found);
   inner.may_begin.renew(found);
-  for_each_item(q, slots,
-                ListInnerFaces{.listed = listed,
+  for_each_item(q, 4 * Index(s.search.exposed_face.size()),
+                ListInnerFaces{.listed = listed_faces(s.search),
                                .close = inner.candidates.data(),
                                .first = inner.first.data(),
                                .other = inner.candidate.data(),
@@ -96,7 +106,7 @@ void prune_edges(const Model& m, State& s, Queue q) {
                               .near = inner.edges.data()});
   const PairsOfEdges of_edges{.first = search.outer.edge_first.data(),
                               .listed = search.outer.edge_pairs.data(),
-                              .other = search.outer.edge_others.data()};
+                              .edges = edges_of_pairs(search.outer)};
   if (pairs > 0)
     for_each_item(q, Index(s.edges.contact.size() / 4),
                   MarkHeldEdges{.exposed_face = search.exposed_face.data(),
@@ -104,14 +114,13 @@ void prune_edges(const Model& m, State& s, Queue q) {
                                 .contact = s.edges.contact.data(),
                                 .pairs = of_edges,
                                 .near = inner.edges.data()});
-  const IsSet near{inner.edges.data()};
-  select_items(q, pairs, near, inner.near_edges);
-  for_each_item(q, Index(inner.near_edges.size()),
-                JoinPairsOfEdges{.listed = inner.near_edges.data(),
-                                 .edges = edges_of_pairs(m, search),
-                                 .pairs = of_edges,
-                                 .near = inner.edges.data()});
-  select_items(q, pairs, near, inner.near_edges);
+  Column<Flag> joined;
+  joined.renew(pairs);
+  copy_items(q, pairs, inner.edges.data(), joined.data());
+  if (pairs > 0)
+    for_each_item(q, pairs, JoinPairsOfEdges{inner.edges.data(), of_edges, joined.data()});
+  inner.edges.swap(joined);
+  select_items(q, pairs, IsSet{inner.edges.data()}, inner.near_edges);
   const Index count = Index(inner.near_edges.size());
   const Index near_stride = padded_stride(count);
   inner.edge_ends.renew(4 * std::size_t(near_stride));
@@ -124,8 +133,7 @@ void prune_edges(const Model& m, State& s, Queue q) {
   for_each_item(q, count,
                 CopyInnerEdges{.near = inner.near_edges.data(),
                                .listed = listed,
-                               .exposed_face = search.exposed_face.data(),
-                               .face_edges = m.face_edges.data(),
+                               .edge_of = search.outer.ee_edges.data(),
                                .ends = inner.edge_ends.data(),
                                .sides = inner.edge_sides.data(),
                                .codes = inner.edge_codes.data(),
@@ -136,9 +144,11 @@ void prune_edges(const Model& m, State& s, Queue q) {
 }  // namespace
 
 void prune_pair_list(const Model& m, State& s, Queue q) {
+  Answer<Index> faces;  // read after the edges are found, so that both have one wait
   predict_inner_motion(m, s, q);
-  prune_vertex_faces(m, s, q);
+  mark_vertex_faces(m, s, q, faces);
   if (m.semi_edges) prune_edges(m, s, q);
+  list_vertex_faces(s, q, faces.read(q));
 }
 
 void prune_pair_list_if_due(const Model& m, State& s, Queue q) {

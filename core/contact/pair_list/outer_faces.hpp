@@ -27,16 +27,6 @@ struct ListFacePairs {
   }
 };
 
-/// Mark both faces of a pair.
-struct MarkListedFaces {
-  const FacePair* pairs;
-  Flag* listed;  // [exposed]
-  CDEM_HD void operator()(One pair) const {
-    set(listed[pairs[pair.i].mother]);
-    set(listed[pairs[pair.i].face]);
-  }
-};
-
 /// Rows of pairs by the face that their contacts act on, in the order of the mothers, see
 /// list_rows.
 struct RowOfActingFace {
@@ -69,14 +59,23 @@ struct RowOfCandidate {
     return candidates[one].face < candidates[other].face;
   }
 };
-/// Write the faces and pairs of listed candidates.
-struct WriteSlotFaces {
+/// Write the pairs of listed candidates.
+struct WriteSlotPairs {
   const Candidate* candidates;
-  Index *pairs, *faces;  // [listed] `pairs` holds the candidates before
+  Index* pairs;  // [listed] the candidates before
+  CDEM_HD void operator()(One i) const { pairs[i.i] = candidates[pairs[i.i]].pair; }
+};
+
+/// The edges of the mesh that the edges of all patches are.
+struct FindEdges {
+  const Index* sides;  // see ListedEdges
+  const Index* exposed_face;
+  const Index* face_edges;  // see FaceColumns
+  Index* edges;
+
   CDEM_HD void operator()(One i) const {
-    const Candidate of = candidates[pairs[i.i]];
-    faces[i.i] = of.face;
-    pairs[i.i] = of.pair;
+    const Index side = sides[2 * std::size_t(i.i)];
+    edges[i.i] = face_edges[4 * exposed_face[side / 4] + side % 4];
   }
 };
 

@@ -6,6 +6,9 @@
 #include "core/contact/broad_phase/exposed_patches.hpp"
 #include "core/contact/broad_phase/pair_search.hpp"
 #include "core/contact/broad_phase/predicted_motion.hpp"
+#include "core/contact/force/stiffness_sums.hpp"
+#include "core/contact/force/views.hpp"
+#include "core/contact/geometry/views.hpp"
 #include "core/contact/pair_list/outer_faces.hpp"
 #include "core/contact/pair_list/views.hpp"
 
@@ -16,14 +19,14 @@ namespace {
 /// Give the memory of the list before back.
 void drop(OuterList& outer) {
   for (Column<Index>* indices :
-       {&outer.vf_pairs, &outer.ee_pairs, &outer.ee_codes, &outer.slot_faces, &outer.slot_pairs,
-        &outer.edge_pairs, &outer.edge_others, &outer.faces_acting_on})
+       {&outer.vf_pairs, &outer.ee_pairs, &outer.ee_codes, &outer.slot_pairs, &outer.edge_pairs,
+        &outer.acting_first, &outer.faces_acting_on})
     *indices = {};
-  for (Column<float>* bounds : {&outer.vf_bounds, &outer.ee_bounds}) *bounds = {};
+  for (Column<Short>* bounds : {&outer.vf_bounds, &outer.ee_bounds}) *bounds = {};
 }
 
 /// Room for `count` pairs with two members and six bounds each; lanes go on past the last.
-Index make_room(Queue q, Index count, Column<Index>& of, Column<float>& room) {
+Index make_room(Queue q, Index count, Column<Index>& of, Column<Short>& room) {
   const Index stride = padded_stride(count);
   of.renew(2 * std::size_t(stride));
   room.renew(6 * std::size_t(stride));
@@ -51,10 +54,7 @@ void list_vertex_faces(const PairContext& f, PairSearch& search, SearchState& s,
   const Index listed = Index(candidates.size()), slots = 4 * Index(s.exposed_face.size());
   list_rows(q, listed, listed, slots, RowOfCandidate{candidates.data()}, outer.slot_first,
             outer.slot_pairs);
-  outer.slot_faces.renew(listed);
-  for_each_item(
-      q, listed,
-      WriteSlotFaces{candidates.data(), outer.slot_pairs.data(), outer.slot_faces.data()});
+  for_each_item(q, listed, WriteSlotPairs{candidates.data(), outer.slot_pairs.data()});
 }
 
 /// List the pairs of edges, and for every edge of the mesh those with edges of higher numbers.
@@ -75,34 +75,55 @@ void list_edge_pairs(const Model& m, const PairContext& f, PairSearch& search, S
                                .room = outer.ee_bounds.data(),
                                .alone = runs_alone()});
   outer.ee_sides.swap(search.edge_sides);
+  const Index edges = Index(outer.ee_sides.size() / 2);
+  outer.ee_edges.renew(edges);
+  for_each_item(q, edges,
+                FindEdges{.sides = outer.ee_sides.data(),
+                          .exposed_face = s.exposed_face.data(),
+                          .face_edges = m.face_edges.data(),
+                          .edges = outer.ee_edges.data()});
   outer.edge_first.resize(0);
-  outer.edge_others.renew(count);
   if (count == 0) return outer.edge_pairs.renew(0);
-  const EdgesOfPairs edges = edges_of_pairs(m, s);
-  list_rows(q, count, count, Index(m.edge_nodes.size() / 2), RowOfEdges{edges}, outer.edge_first,
-            outer.edge_pairs);
-  for_each_item(q, count, SetOtherEdge{edges, outer.edge_pairs.data(), outer.edge_others.data()});
+  list_rows(q, count, count, Index(m.edge_nodes.size() / 2), RowOfEdges{edges_of_pairs(outer)},
+            outer.edge_first, outer.edge_pairs);
 }
 
-/// For every exposed face list the others whose contacts may act on it.
+/// Mark the exposed faces on the lists, and find the stiffest contact that each may have.
+Column<Real> mark_listed_faces(const Model& m, const PairSearch& search, State& s, Queue q) {
+  const Index faces = Index(s.search.exposed_face.size());
+  Column<Flag>& listed = s.search.outer.face_listed;
+  Column<Real> stiffest;
+  stiffest.renew(faces);
+  set_all(q, faces, stiffest.data(), Real(0));
+  listed.renew(faces);
+  set_all(q, faces, listed.data(), Flag(0));
+  for_each_item(
+      q, Index(search.pairs.size()),
+      MarkListedFaces<ListFacePairs>{.pairs = {search.patches.data(), search.pairs.data()},
+                                     .laws = contact_laws(m, s),
+                                     .geometry = face_geometry(s),
+                                     .alone = runs_alone(),
+                                     .listed = listed.data(),
+                                     .stiffest = stiffest.data()});
+  return stiffest;
+}
+
+/// For every exposed face list the others whose contacts may act on it, for laws that ask for
+/// areas.
 void list_acting_faces(const PairSearch& search, SearchState& s, Queue q) {
   OuterList& outer = s.outer;
-  const Index faces = Index(s.exposed_face.size());
   Column<FacePair> pairs;
   list_items(q, Index(search.pairs.size()),
              ListFacePairs{search.patches.data(), search.pairs.data()}, pairs);
   const Index count = Index(pairs.size());
-  outer.face_listed.renew(faces);
-  set_all(q, faces, outer.face_listed.data(), Flag(0));
-  for_each_item(q, count, MarkListedFaces{pairs.data(), outer.face_listed.data()});
-  list_rows(q, count, count, faces, RowOfActingFace{pairs.data()}, outer.acting_first,
-            outer.faces_acting_on);
+  list_rows(q, count, count, Index(s.exposed_face.size()), RowOfActingFace{pairs.data()},
+            outer.acting_first, outer.faces_acting_on);
   for_each_item(q, count, WriteActingFaces{pairs.data(), outer.faces_acting_on.data()});
 }
 
 }  // namespace
 
-void list_candidates(const Model& m, State& s) {
+Column<Real> list_candidates(const Model& m, State& s) {
   const Queue q;
   predict_motion(m, s);
   drop(s.search.outer);
@@ -118,7 +139,8 @@ void list_candidates(const Model& m, State& s) {
   search.edges = {};
   search.moving = {};
   s.search.inner.known = false;
-  list_acting_faces(search, s.search, q);
+  if (m.interface_traits.ask_area) list_acting_faces(search, s.search, q);
+  return mark_listed_faces(m, search, s, q);
 }
 
 }  // namespace cdem

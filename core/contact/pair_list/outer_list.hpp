@@ -6,7 +6,8 @@
 
 namespace cdem {
 
-/// Vertex -> faces that it may touch; face -> sides of others that its own may cross.
-void list_candidates(const Model& model, State& state);
+/// Vertex -> faces that it may touch; face -> sides of others that its own may cross. Returns the
+/// stiffest contact that each exposed face may have  [N/m].
+Column<Real> list_candidates(const Model& model, State& state);
 
 }  // namespace cdem

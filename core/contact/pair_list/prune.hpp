@@ -5,6 +5,7 @@
 #pragma once
 
 #include "core/base/parallel.hpp"
+#include "core/base/short_numbers.hpp"
 #include "core/contact/broad_phase/predicted_node.hpp"
 #include "core/contact/narrow_phase/contact_columns.hpp"
 #include "core/contact/narrow_phase/edge_pair.hpp"
@@ -51,7 +52,7 @@ struct MarkNearFaces {
   const Real* rotation;  // [exposed] how much its normal may soon rotate  [rad]
   const Real* skin;      // [node]  [m]
   Flag* near;
-  Real* motion;  // [pair] how far the vertex may soon move as seen from the face  [m]
+  Short* motion;  // [pair] how far the vertex may soon move as seen from the face  [m]
 
   template <class I>
   CDEM_HD void operator()(I p) const {
@@ -68,7 +69,7 @@ struct MarkNearFaces {
     const auto skin_at = [&](Index k) { return look_up(skin, corners.node[k]); };
     const T skins = look_up(skin, vertex) +
                     max_of(max_of(skin_at(0), skin_at(1)), max_of(skin_at(2), skin_at(3)));
-    store(motion, p, room.at(5, p) + skins);
+    store(motion, p, round_up(room.at(5, p) + skins));
     const T most = select(below, room.at(1, p), room.at(0, p)) + skins;
     // how far a point above the face moves along it as the face rotates
     const T along = T(2.0) * look_up(rotation, face) * (sqrt_of(gap2 / n2) + room.at(5, p) + skins);
@@ -95,12 +96,14 @@ struct MarkNearFaces {
 /// Faces that a vertex of an exposed face may touch before the next rebuild: ragged rows.
 struct ListedFaces {
   const Index* first;    // [4 * exposed + 1], slot = 4 * exposed face + vertex
-  const Index* other;    // exposed face, ascending in a row
-  const Index* pair;     // pair of vertex and face
+  const Index* pair;     // pair of vertex and face, by ascending face in a row
+  const Index* face_of;  // [pair] exposed face
   InBounds room;         // [6][pair] see MarkNearFaces
   const Flag* near;      // [pair] the same
-  const Real* motion;    // [pair] the same
+  InBounds motion;       // [pair] the same
   const Real* rotation;  // [exposed] how much its normal may soon rotate  [rad]
+
+  CDEM_HD Index face(Index c) const { return face_of[pair[c]]; }
 };
 
 /// Of the faces that are near a vertex, mark those on which a semi-spring may soon go on or begin:
@@ -118,14 +121,15 @@ struct MarkInnerFaces {
   template <class I>
   CDEM_HD void operator()(const I& item) const {
     using T = Number<I>;
-    const auto t = look_up(listed.other, item.id);
+    const auto t = indices_of([&](Index c) { return listed.face(c); }, item.id);
     const auto node = indices_of(
         [&](Index m, Index c) { return geometry.table[m].corner[vertex_of(listed.first, m, c)]; },
         item.row, item.id);
     const auto c = VertexFace<T>::at(faces, geometry, rules, item.row, node, t);
     const T rotations = look_up(listed.rotation, item.row) + look_up(listed.rotation, t);
     const auto opposes = dot(geometry.normal(item.row), c.normal) < rotations - T(rules.opposing);
-    const T motion = numbers_of([&](Index x) { return listed.motion[listed.pair[x]]; }, item.id);
+    const T motion =
+        numbers_of([&](Index x) { return listed.motion.at(0, One{listed.pair[x]}); }, item.id);
     const T zero(0.0), plane = dot(c.normal, c.v - c.center);
     const T above = select(c.target_length > zero, zero, T(-0.5) * c.target_length) + motion;
     const T along = T(2.0) * look_up(listed.rotation, t) * (abs_of(plane) + motion);
@@ -181,7 +185,7 @@ struct ListInnerFaces {
     for (Index c = listed.first[slot.i]; c < listed.first[slot.i + 1]; ++c) {
       if (!close[c]) continue;
       rises[place] = listed.room.at(3, One{listed.pair[c]}) > 0;
-      other[place++] = listed.other[c];
+      other[place++] = listed.face(c);
     }
   }
 };
@@ -288,15 +292,11 @@ struct MarkNearEdges {
 
 /// Pairs of edges of the outer list, and the edges of the mesh that they are of.
 struct EdgesOfPairs {
-  InIndices of;  // see ListedEdges
-  const Index* sides;
-  const Index* exposed_face;
-  const Index* face_edges;  // see FaceColumns
+  InIndices of;        // see ListedEdges
+  const Index* sides;  // the same
+  const Index* edges;  // [edge] of the mesh
 
-  CDEM_HD Index edge(Index pair, Index which) const {
-    const Index side = sides[2 * of.at(which, One{pair})];
-    return face_edges[4 * exposed_face[side / 4] + side % 4];
-  }
+  CDEM_HD Index edge(Index pair, Index which) const { return edges[of.at(which, One{pair})]; }
   /// Do faces of one element alone meet at the edge?
   CDEM_HD bool is_of_one(Index pair, Index which) const {
     return sides[2 * of.at(which, One{pair}) + 1] >= 0;
@@ -314,30 +314,20 @@ struct RowOfEdges {
   }
 };
 
-/// The other edge of the pairs in it.
-struct SetOtherEdge {
-  EdgesOfPairs edges;
-  const Index* listed;
-  Index* other;
-
-  CDEM_HD void operator()(One i) const {
-    const Index a = edges.edge(listed[i.i], 0), b = edges.edge(listed[i.i], 1);
-    other[i.i] = a < b ? b : a;
-  }
-};
-
 /// Pairs of edges by the edge of the lower number: ragged rows.
 struct PairsOfEdges {
   const Index* first;   // [edge + 1]
   const Index* listed;  // pair
-  const Index* other;   // the edge of the higher number
+  EdgesOfPairs edges;
 
   /// Visit the pairs of two edges.
   template <class Visit>
   CDEM_HD void each(Index a, Index b, const Visit& visit) const {
     const Index low = a < b ? a : b, high = a < b ? b : a;
-    for (Index i = first[low]; i < first[low + 1]; ++i)
-      if (other[i] == high) visit(listed[i]);
+    for (Index i = first[low]; i < first[low + 1]; ++i) {
+      const Index one = edges.edge(listed[i], 0);
+      if ((one == low ? edges.edge(listed[i], 1) : one) == high) visit(listed[i]);
+    }
   }
 };
 
@@ -360,15 +350,14 @@ struct MarkHeldEdges {
 /// Where faces of two elements meet at an edge, a contact may be found through another pair than
 /// the one that is near: all pairs of the same two edges are listed together.
 struct JoinPairsOfEdges {
-  const Index* listed;  // pairs that are near
-  EdgesOfPairs edges;
+  const Flag* near;
   PairsOfEdges pairs;
-  Flag* near;
+  Flag* joined;  // initially those that are near
 
-  CDEM_HD void operator()(One i) const {
-    const Index p = listed[i.i];
-    if (edges.is_of_one(p, 0) && edges.is_of_one(p, 1)) return;
-    pairs.each(edges.edge(p, 0), edges.edge(p, 1), [&](Index pair) { set(near[pair]); });
+  CDEM_HD void operator()(One p) const {
+    const EdgesOfPairs& edges = pairs.edges;
+    if (!near[p.i] || (edges.is_of_one(p.i, 0) && edges.is_of_one(p.i, 1))) return;
+    pairs.each(edges.edge(p.i, 0), edges.edge(p.i, 1), [&](Index pair) { set(joined[pair]); });
   }
 };
 
@@ -376,8 +365,7 @@ struct JoinPairsOfEdges {
 struct CopyInnerEdges {
   const Index* near;  // [pair]
   ListedEdges listed;
-  const Index* exposed_face;
-  const Index* face_edges;              // see FaceColumns
+  const Index* edge_of;                 // [edge] of the mesh
   Index *ends, *sides, *codes, *edges;  // of EdgePairs
   Index stride;
 
@@ -393,7 +381,7 @@ struct CopyInnerEdges {
         code = EdgeWays::with_neighbours(code, e);
       else if (beside(of_edge[0]) >= 0 || of_edge[1] >= 0)
         code = EdgeWays::with_others(code);
-      edges[place(e, pair)] = face_edges[4 * exposed_face[of_edge[0] / 4] + of_edge[0] % 4];
+      edges[place(e, pair)] = edge_of[listed.of.at(e, from)];
       sides[place(2 * e + 1, pair)] = of_edge[1] >= 0 ? of_edge[1] : of_edge[0];
     }
     codes[pair.i] = code;

@@ -61,13 +61,14 @@ void rebuild_pair_list(const Model& m, State& s, const StepPlan& plan) {
 void list_pairs_of_exposed(const Model& m, State& s, const StepPlan& plan, bool released) {
   join_surfaces(m, s, released);
   list_exposed(m, s);
-  list_candidates(m, s);
+  const Column<Real> stiffest = list_candidates(m, s);
   if (released) {
     list_corners(m, s);
     list_lumped(m, s);
   }
   list_contact_corners(m, s);
-  sum_stiffness(m, s);
+  sum_bond_stiffness(m, s);
+  sum_contact_stiffness(m, s, stiffest);
   if (!plan.everything_awake) list_awake_nodes(m, s);
   s.built_step = s.step;
   ++s.rebuilds;

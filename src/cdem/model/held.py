@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -20,9 +22,7 @@ def unheld_blocks(build: Build, out: NDArray[np.bool_]) -> NDArray[np.bool_]:
     pairs = [
         np.empty((0, 2), int),
         *build.assembly.pair_faces.values(),
-        core["search.exposed_face"][
-            _pairs_of(core["outer.acting_first"], core["outer.faces_acting_on"])
-        ],
+        core["search.exposed_face"][_exposed_pairs(core)],
     ]
     by_modules = [module.joined_blocks() for module in build.modules.values()]
     joined = np.concatenate([t.face_block[np.concatenate(pairs)], *by_modules])
@@ -33,6 +33,16 @@ def unheld_blocks(build: Build, out: NDArray[np.bool_]) -> NDArray[np.bool_]:
     holds = np.zeros(len(held), bool)
     holds[body[held]] = True
     return ~(held | holds[body])
+
+
+def _exposed_pairs(core: Mapping[str, NDArray]) -> NDArray:
+    """Pairs of exposed faces, one of each two elements at least, that the pair list names."""
+    vertex_face = core["outer.vf_pairs"].reshape(2, -1)[1]
+    slots = _pairs_of(core["outer.slot_first"], vertex_face[core["outer.slot_pairs"]])
+    face = core["outer.ee_sides"][::2] // 4  # the first one at an edge
+    edges = core["outer.ee_pairs"].reshape(2, -1)[:, : len(core["outer.ee_codes"])].T
+    acting = _pairs_of(core["outer.acting_first"], core["outer.faces_acting_on"])
+    return np.concatenate([slots // [4, 1], face[edges], acting])
 
 
 def _pairs_of(first: NDArray, other: NDArray) -> NDArray:

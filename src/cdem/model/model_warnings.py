@@ -136,7 +136,7 @@ def uneven_tiles(build: Build) -> Iterator[str]:
     t, core = build.topology, build.core.fields()
     exposed, first = core["search.exposed_face"], core["outer.slot_first"]
     mother = exposed[np.repeat(np.arange(len(first) - 1) // 4, np.diff(first))]
-    target = exposed[core["outer.slot_faces"]]
+    target = exposed[core["outer.vf_pairs"].reshape(2, -1)[1, core["outer.slot_pairs"]]]
     others = t.face_group[mother] != t.face_group[target]
     mother, target = mother[others], target[others]
     lie = np.einsum("ij,ij->i", _normals(t, mother), _normals(t, target)) < FACING

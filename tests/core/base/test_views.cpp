@@ -49,17 +49,6 @@ TEST_CASE("a table has one row a quantity, for one item and for a lane") {
   }
 }
 
-TEST_CASE("bounds in single precision are read as numbers") {
-  std::vector<float> data(rows);
-  for (Index i = 0; i < rows; ++i) data[i] = 0.1f * float(i);
-  const InBounds in{data.data(), rows};
-  const Pack p = in.at(0, Lane{1});
-  for (Index j = 0; j < lanes; ++j) {
-    CHECK(p.n[j] == Real(data[1 + j]));
-    CHECK(in.at(0, One{1 + j}) == Real(data[1 + j]));
-  }
-}
-
 TEST_CASE("a table of indices has one row a corner") {
   std::vector<Index> data(2 * rows);
   for (Index i = 0; i < 2 * rows; ++i) data[i] = i * i;

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 
+import numpy as np
 import pytest
 import yaml
 from shared.cases import FALL
@@ -38,6 +39,29 @@ def test_a_checkpoint_of_another_version_with_the_same_fields_can_be_forced(run_
     status, _, err = run_cli("run", "cube.yaml", "--resume")
     assert status == 1 and "another version of cdem (0.0.1; this is" in err and "--force" in err
     assert run_cli("run", "cube.yaml", "--resume", "--force", "--quiet")[0] == 0
+
+
+def test_a_checkpoint_with_a_pair_list_of_before_is_refused_in_one_line(run_cli, cube_folder):
+    """Its bounds were in single precision, and faces and edges stood beside their pairs."""
+    assert run_cli("run", "cube.yaml", "--quiet")[0] == 0
+    arrays, text = read_checkpoint(cube_folder / "cube.results/checkpoint.h5")
+    arrays |= {name: np.zeros(0, np.int32) for name in ("outer.slot_faces", "outer.edge_others")}
+    arrays |= {name: arrays[name].astype("f4") for name in ("outer.vf_bounds", "outer.ee_bounds")}
+    del arrays["outer.ee_edges"]
+    write_checkpoint(cube_folder / "cube.results", arrays, text)
+    status, out, err = run_cli("run", "cube.yaml", "--resume", "--force")
+    assert (status, out, err.count("\n")) == (1, "", 1)
+    assert "holds other fields (outer.edge_others, outer.ee_edges, outer.slot_faces, ...)" in err
+
+
+def test_bounds_of_another_kind_are_refused(run_cli, cube_folder):
+    assert run_cli("run", "cube.yaml", "--quiet")[0] == 0
+    arrays, text = read_checkpoint(cube_folder / "cube.results/checkpoint.h5")
+    arrays["outer.vf_bounds"] = arrays["outer.vf_bounds"].astype("f4")
+    for _ in range(2):  # so that the one before is of the same kind
+        write_checkpoint(cube_folder / "cube.results", arrays, text)
+    status, _, err = run_cli("run", "cube.yaml", "--resume", "--force")
+    assert status == 1 and "outer.vf_bounds holds float32, not a row of uint16" in err
 
 
 @pytest.mark.parametrize("pressed", [False, True])

@@ -19,7 +19,7 @@ TEST_CASE("a live bond puts its share on its nodes, a released one nothing") {
     CHECK(on_host(scene.state.node_bonds)[i] == (scene.position(i).z == 1 ? share : 0));
   on_host(scene.state.quads.status)[0] = 0;
   list_corners(scene.model, scene.state);
-  sum_stiffness(scene.model, scene.state);
+  sum_bond_stiffness(scene.model, scene.state);
   for (Index i = 0; i < 16; ++i) CHECK(on_host(scene.state.node_bonds)[i] == 0);
 }
 

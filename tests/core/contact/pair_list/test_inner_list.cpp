@@ -28,7 +28,11 @@ struct Landing : Scene {
   }
   std::set<std::pair<Index, Index>> inner() const { return pairs(list().first, list().candidate); }
   std::set<std::pair<Index, Index>> outer() const {
-    return pairs(state.search.outer.slot_first, state.search.outer.slot_faces);
+    const OuterList& outer = state.search.outer;
+    const auto of = on_host(outer.vf_pairs);
+    Column<Index> faces;
+    for (const Index pair : on_host(outer.slot_pairs)) push(faces, of[of.size() / 2 + pair]);
+    return pairs(outer.slot_first, faces);
   }
   const InnerList& list() const { return state.search.inner; }
 
@@ -46,17 +50,19 @@ struct Landing : Scene {
 }  // namespace
 
 TEST_CASE("the pairs of two edges are found whichever of them comes first") {
-  const Index first[] = {0, 2, 4, 4}, listed[] = {5, 7, 9, 4}, other[] = {1, 2, 2, 2};
-  const PairsOfEdges pairs{first, listed, other};
-  const auto of = [&](Index a, Index b) {
+  // edges of patches, which are edges 1, 2, 0, 2 of the mesh, and pairs of them
+  const Index edges[] = {1, 2, 0, 2}, of[2][6] = {{2, 1, 0, 3, 2, 0}, {0, 2, 1, 0, 3, 3}};
+  const Index first[] = {0, 3, 6, 6}, listed[] = {0, 1, 4, 2, 3, 5};
+  const PairsOfEdges pairs{first, listed, {.of = {of[0], 6}, .sides = nullptr, .edges = edges}};
+  const auto found = [&](Index a, Index b) {
     std::set<Index> all;
     pairs.each(a, b, [&](Index pair) { all.insert(pair); });
     return all;
   };
-  CHECK(of(0, 1) == std::set<Index>{5});
-  CHECK(of(1, 0) == std::set<Index>{5});
-  CHECK(of(2, 0) == std::set<Index>{7});
-  CHECK(of(2, 1) == std::set<Index>{4, 9});
+  CHECK(found(0, 1) == std::set<Index>{0});
+  CHECK(found(1, 0) == std::set<Index>{0});
+  CHECK(found(2, 0) == std::set<Index>{1, 4});
+  CHECK(found(2, 1) == std::set<Index>{2, 3, 5});
 }
 
 TEST_CASE("the inner list is part of the outer one, and smaller") {

@@ -53,10 +53,23 @@ TEST_CASE("a rebuild lists the faces that may meet, and expects their springs in
   const Real free_step = s.dt;
   rebuild_pair_list(falling.model, s, {.everything_awake = true});
   CHECK(s.rebuilds == 2);
-  CHECK(s.search.outer.faces_acting_on.size() > 0);
+  CHECK(names_pairs(s.search.outer));
   CHECK(on_host(s.node_potential)[8] > 0);
   CHECK(s.dt < free_step);
   CHECK(s.built_step == s.step);
+}
+
+TEST_CASE("faces that may act on each other are listed where a law asks for areas") {
+  Falling falling;
+  const OuterList& outer = falling.state.search.outer;
+  for (Index i = 8; i < 16; ++i) put(falling.motion(i) + 4, Vec{0, 0, -50});
+  rebuild_pair_list(falling.model, falling.state, {.everything_awake = true});
+  CHECK(outer.acting_first.size() == 0);
+  CHECK(outer.faces_acting_on.size() == 0);
+  falling.model.interface_traits.ask_area = true;
+  rebuild_pair_list(falling.model, falling.state, {.everything_awake = true});
+  CHECK(outer.acting_first.size() == falling.state.search.exposed_face.size() + 1);
+  CHECK(outer.faces_acting_on.size() > 0);
 }
 
 }  // namespace cdem::test
