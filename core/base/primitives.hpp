@@ -99,8 +99,8 @@ void sort_pairs(Queue queue, Index count, std::uint64_t* keys, Index* values);
 template <class Kernel>
 void list_rows(Queue queue, Index items, Index numbers, Index rows, const Kernel& kernel,
                Column<Index>& first, Column<Index>& list);
-/// The same without a wait: the list has room for all `numbers`, of which the rows need not have
-/// each.
+/// The same without a wait: the list has room for all `numbers`. Where rows do not have each of
+/// them, its last ones are not set.
 template <class Kernel>
 void list_rows_in_room(Queue queue, Index items, Index numbers, Index rows, const Kernel& kernel,
                        Column<Index>& first, Column<Index>& list);

@@ -86,8 +86,7 @@ void find_across(const Model& m, State& s) {
     for_each_item({}, p.count, FindMates{ps.status.data(), p.faces.data(), mate.data()});
   });
   const std::size_t slots = 4 * s.search.exposed_face.size();
-  Column<Index> across;
-  across.renew(slots);
+  s.search.across.renew(slots);
   for_each_item({}, Index(slots),
                 FindAcross{.exposed_face = s.search.exposed_face.data(),
                            .face_exposed = s.search.face_exposed.data(),
@@ -97,10 +96,7 @@ void find_across(const Model& m, State& s) {
                            .edge_faces = m.edge_faces.data(),
                            .bonded_node = s.nodes.bonded_node.data(),
                            .mate = mate.data(),
-                           .before = s.search.across.data(),
-                           .known = Index(s.search.across.size()),
-                           .across = across.data()});
-  s.search.across.swap(across);
+                           .across = s.search.across.data()});
 }
 
 /// How many bond points of conforming pairs are intact.

@@ -71,23 +71,18 @@ struct FindMates {
 
 /// The face beyond a side of an exposed face: walk through the bodies that meet there, from each
 /// into the next that is bonded to it along the side, until a face is in the open. -1: there is
-/// none. What is no side, of a triangle, keeps its number, or begins with -1.
+/// none, or a triangle has no such side.
 struct FindAcross {
   const Index *exposed_face, *face_exposed;   // [exposed], [face]
   const Index *face_nodes, *face_edges;       // [face][4]
   const Index *edge_nodes, *edge_faces;       // [edge][2]
   const Index *bonded_node, *mate;            // [node], [face], see FindMates
-  const Index* before;                        // [exposed][4] as it was
-  Index known;                                // numbers of that
   Index* across;                              // [exposed][4]
   static constexpr Index most_bodies = 1000;  // around one edge
 
   CDEM_HD void operator()(One slot) const {
     const Index face = exposed_face[slot.i / 4], side = slot.i % 4;
-    if (side < vertex_count(face))
-      across[slot.i] = beyond(face, side);
-    else
-      across[slot.i] = slot.i < known ? before[slot.i] : -1;
+    across[slot.i] = side < vertex_count(face) ? beyond(face, side) : -1;
   }
 
  private:

@@ -25,7 +25,7 @@ struct SidesByFace {
 
   SidesByFace(const State& s, const PairSides& sides, Index pairs) {
     const Index faces = Index(s.search.exposed_face.size());
-    list_rows({}, 2 * pairs, 2 * pairs, faces, sides, first, rows);
+    list_rows_in_room({}, 2 * pairs, 2 * pairs, faces, sides, first, rows);
   }
 };
 

@@ -25,8 +25,8 @@ template void select_items(Queue, Index, const OpensAsHinge<BrokenOfOverlaps>&, 
 template void for_each_item(Queue, Index, const OpenHinge<BrokenOfConforming<3>>&);
 template void for_each_item(Queue, Index, const OpenHinge<BrokenOfConforming<4>>&);
 template void for_each_item(Queue, Index, const OpenHinge<BrokenOfOverlaps>&);
-template void list_rows(Queue, Index, Index, Index, const PairSides&, Column<Index>&,
-                        Column<Index>&);
+template void list_rows_in_room(Queue, Index, Index, Index, const PairSides&, Column<Index>&,
+                                Column<Index>&);
 template void for_each_item(Queue, Index, const GiveHistory&);
 template void for_each_item(Queue, Index, const TransferToContacts&);
 template void list_items(Queue, Index, const ListBonded&, Column<Index>&);

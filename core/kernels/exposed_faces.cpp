@@ -20,8 +20,8 @@ template void for_each_item(Queue, Index, const GatherRows<Index>&);
 template void for_each_item(Queue, Index, const GatherRows<Real>&);
 template void for_each_item(Queue, Index, const CountKeptEdges&);
 template void for_each_item(Queue, Index, const MoveKeptEdges&);
-template void list_rows(Queue, Index, Index, Index, const MotherOfEdge&, Column<Index>&,
-                        Column<Index>&);
+template void list_rows_in_room(Queue, Index, Index, Index, const MotherOfEdge&, Column<Index>&,
+                                Column<Index>&);
 template void for_each_item(Queue, Index, const CountAddedEdges&);
 template void for_each_item(Queue, Index, const PutAddedEdges&);
 

@@ -32,8 +32,8 @@ template void copy_items(Queue, Index, const VertexFaceItem*, VertexFaceItem*);
 template void copy_items(Queue, Index, const EdgeItem*, EdgeItem*);
 template void for_each_item(Queue, Index, const WriteVertexFaces&);
 template void list_items(Queue, Index, const ListSemiSprings&, Column<Candidate>&);
-template void list_rows(Queue, Index, Index, Index, const RowOfCandidate&, Column<Index>&,
-                        Column<Index>&);
+template void list_rows_in_room(Queue, Index, Index, Index, const RowOfCandidate&, Column<Index>&,
+                                Column<Index>&);
 template void for_each_item(Queue, Index, const WriteSlotPairs&);
 template void for_each_item(Queue, Index, const FindEdges&);
 template void for_each_item(Queue, Index, const MakeMovingEdges&);
@@ -42,8 +42,8 @@ template void keep_items(Queue, const EdgesMayTouch&, Column<EdgeItem>&);
 template void for_each_item(Queue, Index, const WriteEdgePairs&);
 template void list_items(Queue, Index, const ListFacePairs&, Column<FacePair>&);
 template void for_each_item(Queue, Index, const MarkListedFaces<ListFacePairs>&);
-template void list_rows(Queue, Index, Index, Index, const RowOfActingFace&, Column<Index>&,
-                        Column<Index>&);
+template void list_rows_in_room(Queue, Index, Index, Index, const RowOfActingFace&, Column<Index>&,
+                                Column<Index>&);
 template void for_each_item(Queue, Index, const WriteActingFaces&);
 template void raise_if_any(Queue, Index, const ExceedsSkin&, Flag*);
 template void for_each_item(Queue, Index, const PredictInner&);
@@ -55,7 +55,7 @@ template void for_each_lane(Queue, Index, const MarkNearEdges&);
 template void for_each_item(Queue, Index, const MarkHeldEdges&);
 template void for_each_item(Queue, Index, const JoinPairsOfEdges&);
 template void for_each_item(Queue, Index, const CopyInnerEdges&);
-template void list_rows(Queue, Index, Index, Index, const RowOfEdges&, Column<Index>&,
-                        Column<Index>&);
+template void list_rows_in_room(Queue, Index, Index, Index, const RowOfEdges&, Column<Index>&,
+                                Column<Index>&);
 
 }  // namespace cdem

@@ -5,8 +5,8 @@
 
 namespace cdem {
 
-template void list_rows(Queue, Index, Index, Index, const CornersByNode&, Column<Index>&,
-                        Column<Index>&);
+template void list_rows_in_room(Queue, Index, Index, Index, const CornersByNode&, Column<Index>&,
+                                Column<Index>&);
 template void for_each_item(Queue, Index, const LowerLengths&);
 template void select_items(Queue, Index, const IsOnExposed&, Column<Index>&);
 template void for_each_item(Queue, Index, const PlacePredicted&);

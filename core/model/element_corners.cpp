@@ -21,8 +21,8 @@ ElementCorners element_corners(const Model& m, const State& s) {
 
 void list_element_corners(const Model& m, State& s) {
   const ElementCorners all = element_corners(m, s);
-  list_rows({}, element_count(m, s), element_corner_count(m, s), m.node_count, CornersByNode{all},
-            s.nodes.element_first, s.nodes.element_corner);
+  list_rows_in_room({}, element_count(m, s), element_corner_count(m, s), m.node_count,
+                    CornersByNode{all}, s.nodes.element_first, s.nodes.element_corner);
 }
 
 }  // namespace cdem

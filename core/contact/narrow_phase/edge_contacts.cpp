@@ -42,7 +42,7 @@ void add_edges(State& s, const Column<EdgeContact>& contacts, const ContactState
   const Index count = Index(e.first.size()) - 1;
   Column<Index> added_first, list, first, contact;
   Column<Real> state, reaction;
-  list_rows({}, added, added, count, MotherOfEdge{contacts.data()}, added_first, list);
+  list_rows_in_room({}, added, added, count, MotherOfEdge{contacts.data()}, added_first, list);
   const AddedEdges all{.rows = rows_of(e),
                        .contact = contacts.data(),
                        .first = added_first.data(),

@@ -52,8 +52,8 @@ void list_vertex_faces(const PairContext& f, PairSearch& search, SearchState& s,
   list_items(q, count, ListSemiSprings{f, search.pairs.data(), search.vertex_faces.data()},
              candidates);
   const Index listed = Index(candidates.size()), slots = 4 * Index(s.exposed_face.size());
-  list_rows(q, listed, listed, slots, RowOfCandidate{candidates.data()}, outer.slot_first,
-            outer.slot_pairs);
+  list_rows_in_room(q, listed, listed, slots, RowOfCandidate{candidates.data()}, outer.slot_first,
+                    outer.slot_pairs);
   for_each_item(q, listed, WriteSlotPairs{candidates.data(), outer.slot_pairs.data()});
 }
 
@@ -84,8 +84,8 @@ void list_edge_pairs(const Model& m, const PairContext& f, PairSearch& search, S
                           .edges = outer.ee_edges.data()});
   outer.edge_first.resize(0);
   if (count == 0) return outer.edge_pairs.renew(0);
-  list_rows(q, count, count, Index(m.edge_nodes.size() / 2), RowOfEdges{edges_of_pairs(outer)},
-            outer.edge_first, outer.edge_pairs);
+  list_rows_in_room(q, count, count, Index(m.edge_nodes.size() / 2),
+                    RowOfEdges{edges_of_pairs(outer)}, outer.edge_first, outer.edge_pairs);
 }
 
 /// Mark the exposed faces on the lists, and find the stiffest contact that each may have.
@@ -116,8 +116,8 @@ void list_acting_faces(const PairSearch& search, SearchState& s, Queue q) {
   list_items(q, Index(search.pairs.size()),
              ListFacePairs{search.patches.data(), search.pairs.data()}, pairs);
   const Index count = Index(pairs.size());
-  list_rows(q, count, count, Index(s.exposed_face.size()), RowOfActingFace{pairs.data()},
-            outer.acting_first, outer.faces_acting_on);
+  list_rows_in_room(q, count, count, Index(s.exposed_face.size()), RowOfActingFace{pairs.data()},
+                    outer.acting_first, outer.faces_acting_on);
   for_each_item(q, count, WriteActingFaces{pairs.data(), outer.faces_acting_on.data()});
 }
 
