@@ -6,8 +6,9 @@
 
 namespace cdem {
 
-/// Raise a flag, which is of an Answer, if `kernel(item)` holds for any of `count` items. A kernel
-/// of packs may hold for all lanes where it holds for one. Instantiated in core/kernels.
+/// Raise a flag, which is of an Answer, if `kernel(item)` holds for any of `count` items. A CPU
+/// asks `kernel.quicker()` first, if there is that: a kernel that holds wherever this one does.
+/// Instantiated in core/kernels.
 template <class Kernel>
 void raise_if_any(Queue queue, Index count, const Kernel& kernel, Flag* flag);
 

@@ -132,18 +132,14 @@ template <class Kernel>
 template <class Kernel>
 bool any_item(Queue, Index count, const Kernel& kernel) {
   constexpr bool packs = requires { kernel(Lane{0}); };
+  using Item = std::conditional_t<packs, Lane, One>;
   constexpr Index size = packs ? lanes : 1;
   Flag found = 0;
   on_threads(count >= worth_threads, [&](Thread thread) {
     const Range part = thread.part_of(count / size);
-    bool own = false;
-    for (Index k = part.first; k < part.last; ++k) {
-      if constexpr (packs)
-        own = any_of(kernel(Lane{k * size})) || own;
-      else
-        own = any_of(kernel(One{k})) || own;
-    }
-    if (own) set(found);
+    decltype(kernel(Item{0})) own{};
+    for (Index k = part.first; k < part.last; ++k) own = own | kernel(Item{k * size});
+    if (any_of(own)) set(found);
   });
   for (Index i = count - count % size; i < count; ++i)
     if (any_of(kernel(One{i}))) found = 1;
@@ -151,6 +147,8 @@ bool any_item(Queue, Index count, const Kernel& kernel) {
 }
 template <class Kernel>
 void raise_if_any(Queue queue, Index count, const Kernel& kernel, Flag* flag) {
+  if constexpr (requires { kernel.quicker(); })
+    if (!any_item(queue, count, kernel.quicker())) return;
   if (any_item(queue, count, kernel)) *flag = 1;
 }
 

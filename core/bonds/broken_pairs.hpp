@@ -16,29 +16,28 @@ struct PairLengths {
   }
 };
 
-/// Has a broken pair moved by more than a part of its length? Of a pack: has any?
+/// Has a pair moved since it broke?
+struct HasJumped {
+  InTable jump;  // [pair] of broken points  [m]
+  template <class I>
+  CDEM_HD auto operator()(I item) const {
+    return jump.at(0, item) > Number<I>(0.0);
+  }
+};
+
+/// Has a broken pair moved by more than a part of its length?
 struct HasMovedFar {
   Real part;
   const Flag* status;
   InTable jump;  // [pair] of broken points  [m]
   PairLengths lengths;
 
-  template <class I>
-  CDEM_HD auto operator()(I item) const {
-    using T = Number<I>;
-    const T moved = jump.at(0, item);
-    auto any = moved > T(0.0);
-    if (!any_of(any)) return any;
-    bool far = false;
-    for_lanes(item,
-              [&](Index lane, Index pair) { far = far || is_far(pair, of_lane(moved, lane)); });
-    return T(far ? 1.0 : 0.0) > T(0.5);
+  CDEM_HD bool operator()(One pair) const {
+    const Real moved = jump.at(0, pair);
+    return is_live(PairStatus(status[pair.i])) && moved > 0 && moved > part * lengths.at(pair.i);
   }
-
- private:
-  CDEM_HD bool is_far(Index pair, Real moved) const {
-    return is_live(PairStatus(status[pair])) && moved > 0 && moved > part * lengths.at(pair);
-  }
+  /// See raise_if_any.
+  HasJumped quicker() const { return {jump}; }
 };
 
 /// Is a pair bonded by some of its points, and not by others?

@@ -27,7 +27,7 @@ void ask_what_is_due(const Model& m, State& s) {
     ask_if_skin_is_exceeded(s, search.outer.predicted, search.outer.built_time,
                             search.outer.lookahead_time, &due->outer);
   }
-  if (search.inner.known)
+  if (search.inner.known && has_contact_pairs(s))
     ask_if_skin_is_exceeded(s, search.inner.predicted, search.inner.built_time,
                             inner_horizon * search.outer.lookahead_time, &due->inner);
 }
