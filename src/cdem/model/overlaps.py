@@ -25,7 +25,6 @@ def adopt_overlaps(build: Build) -> tuple[float, int, int]:
     raise ModelError(
         f"blocks overlap at the start, too deeply for contacts: block {a} (group {names[0]}) "
         f"and block {b} (group {names[1]}) by {depth:.3g} m near ({where}), where contacts work "
-        f"down to {allowed:.3g} m; {pairs} pairs of elements in all. Move the blocks apart, cut "
-        f"one of "
+        f"down to {allowed:.3g} m; {pairs} of elements in all. Move the blocks apart, cut one of "
         "them, or remove duplicates"
     )
