@@ -166,6 +166,40 @@ struct AddUp {
   }
 };
 
+/// Runs of pairs are merged to runs of twice the length, from one array to the other and back.
+struct SortPairs {
+  Index count;
+  std::uint64_t *keys, *other_keys;
+  Index *values, *other_values;
+  void operator()(One) const {
+    SortPairs from = *this;
+    for (Index run = 1; run<count; run = count - run> run ? 2 * run : count) {
+      for (Index first = 0; first < count; first += std::min(2 * run, count - first))
+        from.merge(first, std::min(run, count - first), std::min(2 * run, count - first));
+      from = {.count = count,
+              .keys = from.other_keys,
+              .other_keys = from.keys,
+              .values = from.other_values,
+              .other_values = from.values};
+    }
+    for (Index i = 0; from.keys != keys && i < count; ++i) {
+      keys[i] = from.keys[i];
+      values[i] = from.values[i];
+    }
+  }
+
+ private:
+  void merge(Index first, Index middle, Index last) const {
+    Index a = first, b = first + middle;
+    for (Index i = first; i < first + last; ++i) {
+      const bool takes_a = a < first + middle && (b == first + last || keys[a] <= keys[b]);
+      const Index from = takes_a ? a++ : b++;
+      other_keys[i] = keys[from];
+      other_values[i] = values[from];
+    }
+  }
+};
+
 template <class T>
 T fetch_word(const T* word) {
   finish({});
@@ -185,6 +219,15 @@ Index scan(Queue queue, Index count, const Index* counts, Index* first) {
 
 void find_most_of(Queue queue, Index count, const Real* values, Most* answer) {
   for_each_item(queue, 1, FindMost{count, values, answer});
+}
+
+void sort_pairs(Queue queue, Index count, std::uint64_t* keys, Index* values) {
+  for_each_item(queue, 1,
+                SortPairs{.count = count,
+                          .keys = keys,
+                          .other_keys = scratch<std::uint64_t>(count),
+                          .values = values,
+                          .other_values = scratch<Index>(count)});
 }
 
 Real exact_sum_of(Queue queue, Index count, const Real* values) {
@@ -218,12 +261,8 @@ void add_up(Queue queue, Index count, const Index* counts, Index* first) {
   scan(queue, count, counts, first);
 }
 
-#endif
-
 /// Byte after byte from the lowest one, by as many counts as there are values of a byte and parts.
-void sort_pairs(Queue queue, Index count, std::uint64_t* keys, Index* values) {
-  finish(queue);
-  const Transfer transfer;
+void sort_pairs(Queue, Index count, std::uint64_t* keys, Index* values) {
   constexpr Index digits = 256;
   const Parts parts = parts_of(count, 16 * worth_threads);
   std::vector<Index> place(digits * std::size_t(parts.count));
@@ -251,6 +290,8 @@ void sort_pairs(Queue queue, Index count, std::uint64_t* keys, Index* values) {
     std::swap(values, to_values);
   }  // an even number of times: the given array is sorted
 }
+
+#endif
 
 #endif
 
