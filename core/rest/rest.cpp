@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "core/base/primitives.hpp"
+#include "core/contact/force/force.hpp"
 #include "core/diagnostics/unbalance.hpp"
 #include "core/elements/report.hpp"
 #include "core/nodes/masses.hpp"
@@ -58,6 +59,7 @@ Real find_forces(const Model& m, State& s, Queue q) {
   s.search.outer.skin_exceeded = true;  // the nodes may have moved far
   const StepPlan plan{.sample = true, .everything_awake = true};
   update_forces(m, s, q, plan);
+  fit_contacts_by_target(s);
   sum_forces(m, s, q, plan);
   return unbalance_ratio(m, s);
 }

@@ -4,6 +4,7 @@
 #include <iterator>
 
 #include "core/contact/broad_phase/predicted_motion.hpp"
+#include "core/contact/force/force.hpp"
 #include "core/contact/narrow_phase/exposed_faces.hpp"
 #include "core/contact/pair_list/rebuild.hpp"
 #include "core/diagnostics/energy.hpp"
@@ -139,7 +140,8 @@ Report run(const Model& m, State& s, const Goal& goal) {
   begin_run(s, goal);
   const Report report = take_steps(m, s, goal);
   s.search.asked_step = -1;  // something may move nodes before the next run
-  finish({});                // Python may have views of arrays
+  fit_contacts_by_target(s);
+  finish({});  // Python may have views of arrays
   return report;
 }
 

@@ -144,6 +144,13 @@ void add_rolling_couples(const Model& m, State& s, Queue q) {
 
 }  // namespace
 
+void fit_contacts_by_target(State& s) {
+  ContactsByTargetState& acting = s.contacts_by_target;
+  if (acting.first.size() == 0) return;
+  const Transfer transfer;
+  acting.contact.renew(on_host(acting.first)[acting.first.size() - 1]);
+}
+
 void update_contact_forces(const Model& m, State& s, Queue q) {
   const PhaseTimer timer(s, Phase::contact);
   list_contacts_by_target(s, q);
