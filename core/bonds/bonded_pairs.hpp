@@ -129,8 +129,8 @@ struct PairColumns {
 /// The ends of the bonds of pairs, once contacts have taken over their force.
 struct BondEnds {
   PairColumns pairs;
-  Real* corner_force;  // rows of 4 of the pairs
-  Index corners;       // rows of a pair
+  OutForces corner_force;  // of the pairs
+  Index corners;           // rows of a pair
 
   /// Energy that no contact holds is lost to friction. A pair that is released bears nothing:
   /// kernels leave its rows as they are, or clear them where others of a pack are live, so that the
@@ -138,8 +138,7 @@ struct BondEnds {
   CDEM_HD void end(One pair) const {
     pairs.friction.set(0, pair, pairs.friction.at(0, pair) + pairs.stored.at(0, pair));
     pairs.stored.set(0, pair, 0);
-    Real* const rows = corner_force + 4 * std::size_t(corners) * pair.i;
-    for (Index k = 0; k < 4 * corners; ++k) rows[k] = 0;
+    for (Index k = 0; k < corners; ++k) corner_force.set(pair, corners, k, {0.0, 0.0, 0.0});
   }
 };
 

@@ -15,10 +15,6 @@ namespace {
 /// Is the energy of pairs wanted that are intact?
 bool wants_energy(const StepPlan& plan) { return plan.sample || plan.everything_awake; }
 
-OutForces corner_forces(State& s, const PairSet& p) {
-  return {s.corner_force.data() + std::size_t(p.corner_first) * 4};
-}
-
 PairDashpots dashpots(const Model& m, const State& s, const PairSet& p, PairState& ps) {
   return {.dt = s.dt_last,
           .per_step = s.dt_last > 0 ? m.damping_time / s.dt_last : 0,

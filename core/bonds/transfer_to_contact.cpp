@@ -40,9 +40,8 @@ PointsOnFaces points_on_faces(const Model& m, const PairSet& p) {
 }
 
 BondEnds bond_ends(const Model& m, State& s, const PairSet& p, PairState& ps) {
-  return {.pairs = pair_columns(m, p, ps),
-          .corner_force = s.corner_force.data() + 4 * std::size_t(p.corner_first),
-          .corners = p.corners};
+  return {
+      .pairs = pair_columns(m, p, ps), .corner_force = corner_forces(s, p), .corners = p.corners};
 }
 
 TransferToContacts conforming_transfer(const Model& m, State& s, const PairSet& p, PairState& ps,
@@ -141,11 +140,13 @@ void transfer_released_bonds(const Model& m, State& s, Queue q) {
   for_each_item(q, count, CountNewStates{released, contacts, first.data() + 1});
   const Index known = Index(s.edges.old_state.size() / 8);
   const Index more = scan(q, count, first.data() + 1, first.data());
-  Column<Real> states;
-  states.renew(8 * (std::size_t(known) + more));
-  copy_items(q, 8 * known, s.edges.old_state.data(), states.data());
-  s.edges.old_state.swap(states);
-  contacts.edge_states = s.edges.old_state.data();
+  if (more > 0) {
+    Column<Real> states;
+    states.renew(8 * (std::size_t(known) + more));
+    copy_items(q, 8 * known, s.edges.old_state.data(), states.data());
+    s.edges.old_state.swap(states);
+    contacts.edge_states = s.edges.old_state.data();
+  }
   for_each_item(q, count,
                 GiveToSuccessors{.released = released,
                                  .contacts = contacts,

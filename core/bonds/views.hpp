@@ -34,6 +34,11 @@ inline PairColumns pair_columns(const Model& m, const PairSet& p, PairState& s) 
           .friction = inout(s.friction)};
 }
 
+/// Forces on the corner rows of a set.
+inline OutForces corner_forces(State& s, const PairSet& p) {
+  return {s.corner_force.data() + std::size_t(p.corner_first) * 4};
+}
+
 inline PairLengths pair_lengths(const Model& m, const PairSet& p) {
   return {p.faces.data(), m.face_length.data()};
 }
@@ -59,7 +64,7 @@ inline OverlapBonds overlap_bonds(const Model& m, State& s) {
           .weights_b = p.weights_b.data(),
           .point_area = p.point_area.data(),
           .pairs = pair_columns(m, p, s.overlaps),
-          .corner_force = {s.corner_force.data() + std::size_t(p.corner_first) * 4}};
+          .corner_force = corner_forces(s, p)};
 }
 
 }  // namespace cdem

@@ -103,3 +103,55 @@ def test_contact_search_in_fragmenting_rock_agrees_with_an_all_pairs_search(high
         sim.step(1)  # stops if an all-pairs search finds anything else
         edges += int((sim.contacts["kind"] == 1).sum())
     assert edges > least
+
+
+SHAPES = ["tet4", "wedge6", "pyramid5", "hex8"]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("other", SHAPES)
+@pytest.mark.parametrize("one", SHAPES)
+def test_contact_search_among_thrown_shapes_agrees_with_an_all_pairs_search(one, other):
+    """Two bodies of elements that come apart, one thrown at the other, on one large face.
+
+    In every second throw the bodies overlap at the start, as deep as contacts take.
+    """
+    throw = len(SHAPES) * SHAPES.index(one) + SHAPES.index(other)
+    rng = np.random.default_rng(throw)
+    lift = -0.008 if throw % 2 else 0.01
+    cells = {shape: [2, 2, 1] if shape != "pyramid5" else [1, 1, 1] for shape in SHAPES}
+    sim = simulate(
+        [
+            {
+                "group": "one",
+                "box": {"size": [1, 1, 1], "divisions": cells[one], "shape": one},
+                "translate": [*rng.uniform(-0.3, 0.3, 2).tolist(), 1 + lift],
+            },
+            {
+                "group": "other",
+                "box": {"size": [1, 1, 1], "divisions": cells[other], "shape": other},
+                "translate": [0, 0, 0.001 if throw % 3 else -0.004],
+            },
+            {"group": "bed", "box": {"size": [10, 10, 1]}, "translate": [-4.5, -4.5, -1]},
+        ],
+        {
+            "one": {
+                "velocity": [*rng.uniform(-2, 2, 2).tolist(), -4],
+                "angular_velocity": rng.uniform(-3, 3, 3).tolist(),
+            },
+            "other": {},
+            "bed": {"fix": ["x", "y", "z"]},
+        },
+        interfaces={"default": {"friction_angle": 20, "cohesion": 10, "tensile_strength": 10}},
+        rock={"young_modulus": "0.05 GPa"},
+        model={"split": {"one": "elements", "other": "elements"}},
+        loads={"gravity": [0, 0, -9.81]},
+        stages=[{"name": "fly", "mode": "dynamic", "duration": 9, "damping": {"contact": 0.1}}],
+        contact={"check": True},
+    )
+    touching = 0
+    for _ in range(300):
+        sim.step(1)  # stops if an all-pairs search finds anything else
+        touching = max(touching, len(sim.contacts["kind"]))
+    assert sim.step_count == 300
+    assert touching > 50

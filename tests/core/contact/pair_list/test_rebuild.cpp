@@ -34,6 +34,17 @@ TEST_CASE("the list is due at once in a new state, and when a node has left its 
   CHECK(scene.state.search.outer.skin_exceeded);
 }
 
+TEST_CASE("a node that is moved between two runs is noticed by the next step") {
+  Falling falling;
+  falling.step(3);
+  const std::int64_t rebuilds = falling.state.rebuilds;
+  falling.step(1);
+  CHECK(falling.state.rebuilds == rebuilds);
+  falling.motion(8)[0] += 2 * on_host(falling.state.search.outer.predicted)[7];
+  falling.step(1);
+  CHECK(falling.state.rebuilds == rebuilds + 1);
+}
+
 TEST_CASE("with an interval the list is due every so many steps, whatever moves") {
   Falling falling;
   falling.model.rebuild_interval = 10;
