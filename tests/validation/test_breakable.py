@@ -307,6 +307,62 @@ def test_bonds_of_nonconforming_faces_transfer_their_force_to_contacts(over, sha
     assert (before > 0).all()
     for after, carried, part in zip(pressure_and_drag(), before, within, strict=True):
         assert after == pytest.approx(share * carried, rel=part)
+
+
+def test_overlaps_released_in_one_step_hand_over_to_their_own_contacts():
+    """Three blocks of different height let go of their rails at once, each with its own force.
+
+    Their bonds are torn off at rest, so each rail goes on bearing the weight of its block.
+    """
+    heights = {"low": 0.25, "middle": 0.5, "high": 1.0}
+    blocks, groups = [], {}
+    for x, (name, height) in zip((0, 5, 10), heights.items(), strict=True):
+        blocks += [
+            {
+                "group": f"{name}_rail",
+                "box": {"size": [0.4, 3, 1]},
+                "translate": [x - 0.2, -1.5, -1],
+            },
+            {
+                "group": f"{name}_block",
+                "box": {"size": [1, 0.3, height]},
+                "translate": [x - 0.5, -0.15, 0],
+            },
+        ]
+        groups |= {f"{name}_rail": {"fix": ["x", "y", "z"]}, f"{name}_block": {}}
+    sim = simulate(
+        blocks,
+        groups,
+        interfaces={
+            "default": {"friction_angle": 30, "cohesion": "1 MPa", "tensile_strength": "1 MPa"}
+        },
+        rock={"young_modulus": "0.1 GPa"},
+        loads={"gravity": [0, 7, -7]},
+        time={"safety": 0.1},
+        stages=[
+            {"name": "hold", "mode": "static", "tolerance": 1e-6},
+            {"name": "slide", "mode": "dynamic", "duration": 0.2},
+        ],
+    )
+    assert sim.run_stage("hold") == "converged"
+
+    def pressures():
+        reaction = sim.fields["reaction"]
+        weight = 7 * 2500 * 0.4 * 3 * 1
+        return np.array(
+            [reaction[sim.build.nodes_of(f"{name}_rail"), 2].sum() - weight for name in heights]
+        )
+
+    sim.run_until(sim.time + 1e-9)
+    before = pressures()
+    assert before[1] > 1.3 * before[0] and before[2] > 1.3 * before[1]
+    state = sim.core.fields()
+    for name, value in {"bond": 0, "jump": 1, "jump_at_break": 0}.items():  # they are torn off
+        state[f"overlaps.{name}"][:] = value
+    sim.step()
+    assert not sim.core.fields()["overlaps.status"][:3].any()
+    assert set(sim.contacts["kind"]) == {1}
+    assert pressures() == pytest.approx(before, rel=2e-3)
     sim.step(4000)
     assert abs(sim.energies["error"]) < 2e-4
 

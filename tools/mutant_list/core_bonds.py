@@ -110,6 +110,15 @@ FAULTS = [
         "tests/validation/test_initial_stress.py::test_edges_of_crossed_bars_take_what_their_bond_bore",
     ),
     Mutant(
+        "rows of successors",
+        "overlaps released in one step share the rows of new edge contacts",
+        "core/bonds/overlap_transfer.hpp",
+        "Index row = known + first[item.i];",
+        "Index row = known;",
+        "tests/validation/test_breakable.py::"
+        "test_overlaps_released_in_one_step_hand_over_to_their_own_contacts",
+    ),
+    Mutant(
         "hinge friction",
         "pressed points of a hinge lose no energy to friction",
         "core/bonds/hinges.hpp",
