@@ -1,0 +1,1 @@
+"""Ranks: processes, or threads, that share one model and its work."""
