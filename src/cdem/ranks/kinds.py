@@ -10,7 +10,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cdem._native import core as native
-from cdem.mesh.element_shapes import NODES as SHAPES
 
 if TYPE_CHECKING:
     from cdem._core import Core

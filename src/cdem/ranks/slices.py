@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cdem.mesh.arrays import found_in
+from cdem.mesh.element_shapes import NODES as SHAPES
 from cdem.ranks.kinds import (
     ALL,
     BLOCK,
@@ -16,7 +17,6 @@ from cdem.ranks.kinds import (
     LABELS,
     NOT_KEPT,
     PAIRS,
-    SHAPES,
     Rows,
     Table,
     counts_of,
