@@ -19,7 +19,7 @@ FOLDERS = {
     "joints": "joint sets cut bodies into blocks",
     "terrain": "maps and grids to a meshed site",
     "model": "from a case to the arrays of the core",
-    "ranks": "a model shared out to processes that exchange numbers",
+    "ranks": "a model shared out to processes, its parts, and the whole again",
     "run": "stages, progress, result folder, resume",
     "output": "text, plots, pictures, files, viewer",
     "study": "sweeps, factor of safety, tests of laws",

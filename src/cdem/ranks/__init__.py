@@ -1,1 +1,1 @@
-"""Ranks: processes, or threads, that share one model and its work."""
+"""A model shared out to ranks: their parts, what they exchange, and the whole again."""

@@ -1,0 +1,136 @@
+"""Models shared out to ranks at random, with ghosts."""
+
+import numpy as np
+
+from cdem._native import core as native
+from cdem.model.curves import hand_over
+from cdem.model.options import options_of
+from cdem.ranks.slices import Slice
+
+SHAPES = {"tet4": 4, "pyramid5": 5, "wedge6": 6, "hex8": 8}
+
+
+def counts_of(core):
+    """How many rows there are of each kind."""
+    return {kind["name"]: kind["count"] for kind in core.describe_rows()}
+
+
+def corners_of(core):
+    """Element and node of every corner of all elements."""
+    counts, model, first = counts_of(core), core.model(), 0
+    elements, nodes = [], []
+    for shape, corners in SHAPES.items():
+        count = counts[shape]
+        table = model[f"{shape}.nodes"].reshape(corners, -1)[:, :count]
+        elements.append(np.tile(first + np.arange(count), corners))
+        nodes.append(table.ravel())
+        first += count
+    return np.concatenate(elements), np.concatenate(nodes)
+
+
+def centers_of(core):
+    """Centres of all elements."""
+    elements, nodes = corners_of(core)
+    at = core.fields()["node.motion"].reshape(-1, 8)[nodes, :3]
+    sums = np.stack([np.bincount(elements, x) for x in at.T], axis=1)
+    return sums / np.bincount(elements)[:, None]
+
+
+def parts_of(core, parts, seed):
+    """A part for every element, by halving along random axes, and for every node: its first's."""
+    random = np.random.default_rng(seed)
+    center = centers_of(core)
+    part = np.zeros(len(center), np.int32)
+
+    def halve(elements, first, last):
+        if last - first == 1:
+            part[elements] = first
+            return
+        order = elements[np.argsort(center[elements] @ random.normal(size=3), kind="stable")]
+        middle = (first + last) // 2
+        at = len(order) * (middle - first) // (last - first)
+        halve(order[:at], first, middle)
+        halve(order[at:], middle, last)
+
+    halve(np.arange(len(center)), 0, parts)
+    elements, nodes = corners_of(core)
+    lowest = np.full(counts_of(core)["nodes"], len(center))
+    np.minimum.at(lowest, nodes, elements)
+    return part, part[lowest]
+
+
+def shared_things(core):
+    """Things and the elements at them, as arrays of numbers: nodes, places, pairs, contacts, pairs
+    of the outer list, faces that began flush, bolts."""
+    model, state = core.model(), core.fields()
+    elements, nodes = corners_of(core)
+    of_face = model["face.element"]
+    of_exposed = of_face[state["search.exposed_face"]]
+    things = [(nodes, elements), (model["node.place"][nodes], elements)]
+
+    def both(a, b):
+        there = (a >= 0) & (b >= 0)
+        number = np.arange(there.sum())
+        things.append((np.tile(number, 2), np.concatenate([a[there], b[there]])))
+
+    for kind in ("triangles", "quads", "overlaps"):
+        both(*of_face[model[f"{kind}.faces"].reshape(-1, 2)].T)
+    both(np.repeat(of_face, np.diff(model["flush.first"])), of_face[model["flush.face"]])
+    slot = np.repeat(of_exposed, 4)
+    for name in ("spring.target", "spring.target_before"):
+        target = state[name]
+        both(np.where(target < 0, -1, slot), of_exposed[np.maximum(target, 0)])
+    edge = state["edge.contact"].reshape(-1, 4)
+    both(slot[edge[:, 0]], of_exposed[edge[:, 1]])
+    vertex = np.repeat(slot, np.diff(state["outer.slot_first"]))
+    both(vertex, of_exposed[state["outer.vf_pairs"].reshape(2, -1)[1][state["outer.slot_pairs"]]])
+    pairs = state["outer.ee_pairs"].reshape(2, -1)[:, : len(state["outer.ee_codes"])]
+    both(*slot[state["outer.ee_sides"].reshape(-1, 2)[pairs, 0]])
+    if len(model["bolts.hosts"]):
+        hosts = model["bolts.hosts"].reshape(-1, 8)
+        count = np.diff(model["bolts.first"]), 2 * np.diff(model["bolts.crossing_first"])
+        bolt = np.concatenate([np.repeat(np.arange(len(n)), n) for n in count])
+        of_node = np.full(counts_of(core)["nodes"], -1)
+        of_node[nodes] = elements
+        there = hosts >= 0
+        things.append((np.repeat(bolt, 8)[there.ravel()], of_node[hosts[there]]))
+    return things
+
+
+def with_ghosts(core, own, layers=2):
+    """Elements and those that share something with them, some times over."""
+    present = own.copy()
+    things = shared_things(core)
+    for _ in range(layers):
+        before = present.copy()
+        for thing, element in things:
+            touched = np.zeros(int(thing.max(initial=-1)) + 1, bool)
+            touched[thing[before[element]]] = True
+            present[element[touched[thing]]] = True
+    return np.flatnonzero(present)
+
+
+def slices_of(core, parts, seed, layers=2):
+    """The slices of all ranks."""
+    element_part, node_part = parts_of(core, parts, seed)
+    return [
+        Slice(
+            core, with_ghosts(core, element_part == rank, layers), element_part, node_part, rank
+        )
+        for rank in range(parts)
+    ]
+
+
+def core_of(sim, kept, state=None):
+    """A core of a slice of a simulation, as a stage has left it."""
+    build, case = sim.build, sim.build.case
+    core = native.Core()
+    core.take_counts(kept.counts())
+    core.take_model(kept.model())
+    hand_over(core, build.curves, {})
+    core.set_interfaces(build.assembly.interfaces)
+    materials = [case.materials[case.groups[name].material] for name in build.group_names]
+    core.set_options(options_of(case, materials))
+    core.start(np.ascontiguousarray(build.start_position[kept.keep["nodes"]]))
+    core.restore(kept.state() if state is None else state, sim.core.scalars())
+    return core
