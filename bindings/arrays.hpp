@@ -5,6 +5,7 @@
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/string.h>
 
+#include <memory>
 #include <set>
 #include <string>
 #include <string_view>
@@ -26,6 +27,7 @@ namespace cdem {
 struct Core {
   Model model;
   State state;
+  std::unique_ptr<Exchange> exchange;  // of a rank
 };
 
 using Dict = nb::typed<nb::dict, nb::str, nb::any>;
@@ -256,6 +258,11 @@ inline void restore(Core& core, const Views& arrays, const Dict& scalars) {
   });
   core.state.search.inner.known = core.state.search.inner.held_known = false;  // of another state
   core.state.search.joined_faces = -1;
+}
+/// The same in place of whatever state the core had, as if it were new.
+inline void restore_anew(Core& core, const Views& arrays, const Dict& scalars) {
+  restore(core, arrays, scalars);
+  core.state.nodes.lumped.resize(0);
 }
 
 inline Dict scalars(Core& core) {

@@ -7,12 +7,14 @@
 
 #include "bindings/arrays.hpp"
 #include "bindings/laws.hpp"
+#include "bindings/ranks.hpp"
 #include "bindings/solve.hpp"
 #include "core/base/device.hpp"
 #include "core/base/emulated.hpp"
 #include "core/base/machine_limits.hpp"
 #include "core/base/openmp.hpp"
 #include "core/bonds/initial_tractions.hpp"
+#include "core/contact/broad_phase/predicted_motion.hpp"
 #include "core/contact/pair_list/deep_overlaps.hpp"
 #include "core/contact/pair_list/initial_overlaps.hpp"
 #include "core/diagnostics/energy.hpp"
@@ -119,6 +121,8 @@ const char* name_of(Outcome outcome) {
       return "lost_contact";
     case Outcome::missed_contact:
       return "missed_contact";
+    case Outcome::ghosts_due:
+      return "ghosts_due";
   }
   return "";
 }
@@ -286,12 +290,15 @@ void bind_setup(nb::class_<Core>& core) {
           },
           "time"_a, "weights"_a, "rates"_a)
       .def("set_lumped", [](Core& c, bool lumped) { c.model.lumped = lumped; })
+      .def("take_settings", &take_settings, "whole"_a)
+      .def("take_share", &take_share, "exchange"_a, "share"_a)
       .def("start",
            [](Core& c, Array<Real> position) { init_state(c.model, c.state, position.data()); })
       .def("bond_places", &bond_place_arrays)
       .def("find_applied", [](Core& c) { change_applied(c.model, c.state); })
       .def("set_initial_tractions", &set_tractions, "stress"_a, "bonded"_a)
       .def("restore", &restore)
+      .def("restore_anew", &restore_anew)
       .def("prepare",
            [](Core& c) {
              hold_taken_out(c.model, c.state);
@@ -406,6 +413,9 @@ void bind_diagnostics(nb::class_<Core>& core) {
           "Interface, ratio and place of contacts whose friction falls with the speed.")
       .def("unbalance_ratio", [](const Core& c) { return unbalance_ratio(c.model, c.state); })
       .def(
+          "lift", [](const Core& c) { return c.model.rules.lifted; },
+          "Gap up to which contacts that have dilated are kept, at most [m].")
+      .def(
           "stable_step",
           [](Core& c, const std::vector<Real>& damping, Real time, const std::vector<Real>& weights,
              const std::vector<Real>& rates, bool lumped) {
@@ -464,9 +474,12 @@ NB_MODULE(CDEM_MODULE, module) {
   module.attr("fall_pieces") = fall_pieces;
   module.attr("interface_law_state") = InterfaceLaws::most_state;
   module.attr("point_history") = point_history;
+  module.attr("widest_skin") = widest_skin;
   module.def("device_name", &device_name);
   module.def("energy_terms", &energy_term_infos,
              "Terms of the energy ledger: name, kind (stored, lost, supplied) and meaning.");
+  module.def("near_boxes", &near_boxes, "boxes"_a, "flags"_a,
+             "Flags of the boxes that overlap one with a flag; rows of lowest and highest x y z.");
   module.def("solve_blocks", &solve_blocks, "system"_a, "right"_a, "part"_a, "most_iterations"_a);
   module.def("set_threads", [](int count) { omp_set_num_threads(count); }, "count"_a);
   module.def("measure_bandwidth", &measure_bandwidth, "bytes"_a,

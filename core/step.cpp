@@ -7,6 +7,7 @@
 #include "core/elements/nodal_mean.hpp"
 #include "core/nodes/applied.hpp"
 #include "core/nodes/nodes.hpp"
+#include "core/ranks/ranks.hpp"
 
 namespace cdem {
 
@@ -32,6 +33,7 @@ void update_forces(const Model& m, State& s, Queue q, const StepPlan& plan) {
 void step(const Model& m, State& s, Queue q, const StepPlan& plan) {
   update_forces(m, s, q, plan);
   advance_nodes(m, s, q, plan);  // nodes/
+  receive_ghosts(s);             // ranks/
   advance_clock(s);              // nodes/time_step
   ask_what_is_due(m, s);         // contact/pair_list
   renew_step_if_due(m, s);       // nodes/time_step

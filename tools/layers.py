@@ -16,6 +16,7 @@ FOLDERS = {
     "materials": "block laws, one file each",
     "interfaces": "joint laws, one file each",
     "model": "all arrays, described; the modules",
+    "ranks": "decisions and rows that ranks share",
     "contact/geometry": "faces and edges as they are now",
     "elements": "forces of elements",
     "nodes": "sums, motion, time step, supports",

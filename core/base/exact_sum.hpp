@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 
+#include "core/base/exchange.hpp"
 #include "core/base/lanes.hpp"
 
 namespace cdem {
@@ -25,6 +26,10 @@ class ExactSum {
   /// Add a part given by its words.
   void add(const std::int64_t* part);
   void add(const ExactSum& part) { add(part.word_.data()); }
+  /// Add the parts of all other ranks; null: there are none.
+  void add_ranks(Exchange* ranks) {
+    if (ranks) ranks->add_up(word_.data(), words);
+  }
   /// Within two units in the last place; no number if one of them was none or too large.
   Real value() const;
 

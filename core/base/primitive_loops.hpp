@@ -73,12 +73,14 @@ void copy_items(Queue queue, Index count, const T* from, T* into) {
 #if defined(CDEM_CPU)
 
 template <class Kernel>
-void find_most(Queue, Index count, const Kernel& kernel, Answer<Most>& answer) {
+void find_most(Queue, Index count, const Kernel& kernel, const Flag* own_items,
+               Answer<Most>& answer) {
   Most all;
   on_threads(count >= worth_threads, [&](Thread thread) {
     Most own;
     const Range part = thread.part_of(count);
-    for (Index i = part.first; i < part.last; ++i) own.meet(kernel(One{i}), i);
+    for (Index i = part.first; i < part.last; ++i)
+      if (!own_items || own_items[i]) own.meet(kernel(One{i}), i);
 #pragma omp critical(cdem_most)
     all.meet(own.value, own.item);
   });
@@ -86,7 +88,7 @@ void find_most(Queue, Index count, const Kernel& kernel, Answer<Most>& answer) {
 }
 
 template <class Kernel>
-Real exact_sum(Queue, Index count, const Kernel& kernel) {
+Real exact_sum(Queue, Index count, const Kernel& kernel, const Counted& counted) {
   constexpr Index chunk = ExactSum::most;
   ExactSum all;
   on_threads(count >= worth_threads, [&](Thread thread) {
@@ -96,11 +98,14 @@ Real exact_sum(Queue, Index count, const Kernel& kernel) {
     for (Index c = part.first; c < part.last; ++c) {
       const Index first = c * chunk, here = std::min(chunk, count - first);
       for (Index i = 0; i < here; ++i) numbers[i] = kernel(One{first + i});
+      for (Index i = 0; counted.own && i < here; ++i)
+        if (!counted.own[first + i]) numbers[i] = 0;
       own.add(numbers, here);
     }
 #pragma omp critical(cdem_exact_sum)
     all.add(own);
   });
+  all.add_ranks(counted.ranks);
   return all.value();
 }
 
@@ -186,17 +191,24 @@ void keep_items(Queue, const Kernel& kernel, Column<Item>& items) {
 /// The same of numbers.
 void find_most_of(Queue queue, Index count, const Real* values, Most* answer);
 
+/// Other numbers of items that are not own, if there are any (null: there are none).
 template <class Kernel>
 struct SetValue {
   Kernel kernel;
+  const Flag* own;
+  Real other;
   Real* values;
-  CDEM_HD void operator()(One item) const { values[item.i] = kernel(item); }
+  CDEM_HD void operator()(One item) const {
+    const Real value = kernel(item);
+    values[item.i] = !own || own[item.i] ? value : other;
+  }
 };
 template <class Kernel>
-void find_most(Queue queue, Index count, const Kernel& kernel, Answer<Most>& answer) {
+void find_most(Queue queue, Index count, const Kernel& kernel, const Flag* own,
+               Answer<Most>& answer) {
   if (count == 0) return answer.set(queue, {});
   Real* const values = scratch<Real>(count);
-  for_each_item(queue, count, SetValue<Kernel>{kernel, values});
+  for_each_item(queue, count, SetValue<Kernel>{kernel, own, -infinity, values});
   find_most_of(queue, count, values, answer.data());
 }
 
@@ -217,7 +229,7 @@ __device__ inline std::int64_t sum_of_warp(std::int64_t digit) {
 /// Add a number of each item to the words of a sum: digit by digit in warps, which have a sum each,
 /// then these.
 template <class Kernel>
-__global__ void sum_on_gpu(Index count, Kernel kernel, std::int64_t* words) {
+__global__ void sum_on_gpu(Index count, Kernel kernel, const Flag* counted, std::int64_t* words) {
   __shared__ std::int64_t own[sum_threads / sum_warp][ExactSum::words];
   const int warp = threadIdx.x / sum_warp, lane = threadIdx.x % sum_warp;
   for (int k = lane; k < ExactSum::words; k += sum_warp) own[warp][k] = 0;
@@ -225,7 +237,10 @@ __global__ void sum_on_gpu(Index count, Kernel kernel, std::int64_t* words) {
   const std::int64_t step = std::int64_t(gridDim.x) * sum_threads;
   std::int64_t first = std::int64_t(blockIdx.x) * sum_threads + warp * sum_warp;
   for (; first < count; first += step) {
-    const NumberDigits digits(first + lane < count ? kernel(One{Index(first + lane)}) : 0.0);
+    const Index item = Index(first + lane);
+    const Real number = first + lane < count ? kernel(One{item}) : 0.0;
+    const bool counts = first + lane < count && (!counted || counted[item]);
+    const NumberDigits digits(counts ? number : 0.0);
     int k = most_of_warp(digits.below(ExactSum::words));
     for (; k >= 0; k = most_of_warp(digits.below(k))) {
       const std::int64_t sum = sum_of_warp(digits.at(k));
@@ -242,28 +257,30 @@ __global__ void sum_on_gpu(Index count, Kernel kernel, std::int64_t* words) {
 
 /// Words of a sum, initially zero, and the sum of all terms added.
 std::int64_t* zeroed_words(Queue queue);
-Real sum_of_words(Queue queue, const std::int64_t* words);
+Real sum_of_words(Queue queue, const std::int64_t* words, Exchange* ranks);
 
 template <class Kernel>
-Real exact_sum(Queue queue, Index count, const Kernel& kernel) {
-  if (count == 0) return 0;
+Real exact_sum(Queue queue, Index count, const Kernel& kernel, const Counted& counted) {
+  if (count == 0 && !counted.ranks) return 0;
   std::int64_t* const words = zeroed_words(queue);
   const Index groups = std::min(sum_groups, count / sum_threads + (count % sum_threads > 0));
-  launch_groups(queue, groups, sum_threads, sum_on_gpu<Kernel>, count, kernel, words);
-  return sum_of_words(queue, words);
+  if (groups > 0)
+    launch_groups(queue, groups, sum_threads, sum_on_gpu<Kernel>, count, kernel, counted.own,
+                  words);
+  return sum_of_words(queue, words, counted.ranks);
 }
 
 #else
 
 /// The same of numbers.
-Real exact_sum_of(Queue queue, Index count, const Real* values);
+Real exact_sum_of(Queue queue, Index count, const Real* values, Exchange* ranks);
 
 template <class Kernel>
-Real exact_sum(Queue queue, Index count, const Kernel& kernel) {
-  if (count == 0) return 0;
+Real exact_sum(Queue queue, Index count, const Kernel& kernel, const Counted& counted) {
+  if (count == 0 && !counted.ranks) return 0;
   Real* const values = scratch<Real>(count);
-  for_each_item(queue, count, SetValue<Kernel>{kernel, values});
-  return exact_sum_of(queue, count, values);
+  for_each_item(queue, count, SetValue<Kernel>{kernel, counted.own, 0, values});
+  return exact_sum_of(queue, count, values, counted.ranks);
 }
 
 #endif
@@ -349,9 +366,9 @@ void keep_items(Queue queue, const Kernel& kernel, Column<Item>& items) {
 #endif
 
 template <class Kernel>
-Most most(Queue queue, Index count, const Kernel& kernel) {
+Most most(Queue queue, Index count, const Kernel& kernel, const Flag* own) {
   Answer<Most>& answer = answer_of_thread<Most>();
-  find_most(queue, count, kernel, answer);
+  find_most(queue, count, kernel, own, answer);
   return answer.read(queue);
 }
 

@@ -11,6 +11,7 @@
 #include "core/base/answer.hpp"
 #include "core/base/any_item.hpp"
 #include "core/base/column.hpp"
+#include "core/base/exchange.hpp"
 #include "core/base/parallel.hpp"
 
 namespace cdem {
@@ -43,17 +44,19 @@ struct Most {
   }
 };
 
-/// Find the largest `kernel(item)`, where kernels can read it; NaN does not count.
+/// Find the largest `kernel(item)` of the own items of a rank, or of all (null), where kernels can
+/// read it; NaN does not count.
 template <class Kernel>
-void find_most(Queue queue, Index count, const Kernel& kernel, Answer<Most>& answer);
+void find_most(Queue queue, Index count, const Kernel& kernel, const Flag* own,
+               Answer<Most>& answer);
 /// The same. Waits for the answer.
 template <class Kernel>
-Most most(Queue queue, Index count, const Kernel& kernel);
+Most most(Queue queue, Index count, const Kernel& kernel, const Flag* own);
 
 /// Sum of `kernel(item)`, which is called once for each item, without round-off: see exact_sum.hpp.
-/// Waits for it.
+/// Items that count for another rank add what they have there. Waits for it.
 template <class Kernel>
-Real exact_sum(Queue queue, Index count, const Kernel& kernel);
+Real exact_sum(Queue queue, Index count, const Kernel& kernel, const Counted& counted);
 
 /// A number of every item, for a sum of it: of rows that are `stride` long.
 template <Index stride = 1>
@@ -62,7 +65,7 @@ struct EachNumber {
   CDEM_HD Real operator()(One item) const { return first[std::size_t(item.i) * stride]; }
 };
 /// Sum of an array.
-Real column_sum(Queue queue, const Column<Real>& column);
+Real column_sum(Queue queue, const Column<Real>& column, const Counted& counted);
 
 /// Is the flag of an item set?
 struct IsSet {

@@ -5,6 +5,7 @@
 #include "core/bonds/joined_nodes.hpp"
 #include "core/bonds/surface_rows.hpp"
 #include "core/model/force_sets.hpp"
+#include "core/ranks/ranks.hpp"
 
 namespace cdem {
 
@@ -16,6 +17,35 @@ void for_each_conforming_set(const Model& m, const State& s, Visit&& visit) {
   for_each_pair_set(m, s, [&](auto, const PairSet& p, const PairState& ps) {
     if (conforms(p)) visit(p, ps);
   });
+}
+
+/// Join nodes that pairs of other ranks join. Each node has the lowest number of the whole model
+/// that its label has met; owners tell them to ghosts, until none becomes lower.
+void join_labels_of_ranks(const Model& m, State& s, const Labels& labels,
+                          const Column<Index>& numbers) {
+  if (!s.share.exchange) return;
+  const Index count = m.node_count;
+  Column<Real> lowest, told;
+  lowest.renew(count);
+  told.renew(count);
+  for_each_item({}, count, NumberOfNode{numbers.data(), told.data()});
+  set_all({}, count, lowest.data(), infinity);
+  const TellLowest tell{labels.label, lowest.data(), told.data()};
+  const IsToldLower lower{labels.label, lowest.data(), told.data()};
+  while (any_rank(s, any_item({}, count, lower))) {
+    for_each_item({}, count, LowerLabels{labels, told.data(), lowest.data()});
+    for_each_item({}, count, tell);
+    to_ghosts(s, told.data(), {.width = 1, .count = 1});
+  }
+  for_each_item({}, count, tell);
+  Column<std::uint64_t> keys;
+  Column<Index> nodes;
+  keys.renew(count);
+  nodes.renew(count);
+  for_each_item({}, count, KeysOfLowest{told.data(), keys.data(), nodes.data()});
+  sort_pairs({}, count, keys.data(), nodes.data());
+  for_each_item({}, count - 1, JoinSameKeys{keys.data(), nodes.data(), labels});
+  for_each_item({}, count, FinishLabels{labels});
 }
 
 void join_nodes(const Model& m, State& s) {
@@ -32,6 +62,7 @@ void join_nodes(const Model& m, State& s) {
                                   .labels = labels});
   });
   for_each_item({}, m.node_count, FinishLabels{labels});
+  join_labels_of_ranks(m, s, labels, s.share.node);
 }
 
 void join_bodies(const Model& m, State& s) {
@@ -45,6 +76,7 @@ void join_bodies(const Model& m, State& s) {
                              .labels = labels});
   });
   for_each_item({}, m.node_count, FinishLabels{labels});
+  join_labels_of_ranks(m, s, labels, s.share.block);
 }
 
 /// Edge stars of the points that vertices of exposed faces belong to: other ends of all edges that
@@ -103,7 +135,7 @@ void find_across(const Model& m, State& s) {
 Real bonded_points(const Model& m, const State& s) {
   Real sum = 0;
   for_each_pair_set(m, s, [&](auto, const PairSet& p, const PairState& ps) {
-    if (conforms(p)) sum += column_sum({}, ps.bond);
+    if (conforms(p)) sum += column_sum({}, ps.bond, {});
   });
   return sum;
 }
@@ -113,7 +145,8 @@ Real bonded_points(const Model& m, const State& s) {
 void join_surfaces(const Model& m, State& s, bool released) {
   const Index faces = Index(s.search.exposed_face.size());
   const Real points = bonded_points(m, s);
-  if (!released && faces == s.search.joined_faces && points == s.search.joined_points) return;
+  const bool known = faces == s.search.joined_faces && points == s.search.joined_points;
+  if (!any_rank(s, released || !known)) return;
   s.search.joined_faces = faces;
   s.search.joined_points = points;
   join_nodes(m, s);

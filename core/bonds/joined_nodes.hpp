@@ -1,6 +1,8 @@
 // joined_nodes.hpp - kernels that label nodes by the lowest one of those that pairs join.
 #pragma once
 
+#include <cstdint>
+
 #include "core/base/parallel.hpp"
 #include "core/records/pair_status.hpp"
 
@@ -83,6 +85,54 @@ struct FinishLabels {
   Labels labels;
   CDEM_HD void operator()(One node) const {
     lower_to(labels.label[node.i], labels.lowest(node.i), labels.alone);
+  }
+};
+
+// Of ranks, see join_labels_of_ranks.
+
+/// Nodes begin with their numbers in the whole model.
+struct NumberOfNode {
+  const Index* number;
+  Real* told;
+  CDEM_HD void operator()(One node) const { told[node.i] = number[node.i]; }
+};
+/// A label meets the numbers that its nodes are told.
+struct LowerLabels {
+  Labels labels;
+  const Real* told;
+  Real* lowest;  // [label]
+  CDEM_HD void operator()(One node) const {
+    lower_to(lowest[labels.label[node.i]], told[node.i], labels.alone);
+  }
+};
+/// Is a node told of a lower number than its label has met?
+struct IsToldLower {
+  const Index* label;
+  const Real *lowest, *told;
+  CDEM_HD bool operator()(One node) const { return told[node.i] < lowest[label[node.i]]; }
+};
+struct TellLowest {
+  const Index* label;
+  const Real* lowest;
+  Real* told;
+  CDEM_HD void operator()(One node) const { told[node.i] = lowest[label[node.i]]; }
+};
+/// Keys that bring nodes with one number together, ascending.
+struct KeysOfLowest {
+  const Real* told;
+  std::uint64_t* keys;
+  Index* nodes;
+  CDEM_HD void operator()(One node) const {
+    keys[node.i] = std::uint64_t(told[node.i]);
+    nodes[node.i] = node.i;
+  }
+};
+struct JoinSameKeys {
+  const std::uint64_t* keys;
+  const Index* nodes;
+  Labels labels;
+  CDEM_HD void operator()(One place) const {
+    if (keys[place.i] == keys[place.i + 1]) labels.join(nodes[place.i], nodes[place.i + 1]);
   }
 };
 

@@ -41,38 +41,42 @@ Real balance(const Energies& e) {
 /// The terms without start and error.
 Energies sum_terms(const Model& m, const State& s) {
   const Queue q;
+  const Counted nodes = s.share.counted("nodes"), faces = s.share.counted("exposed"),
+                slots = s.share.counted("slots");
   const auto sample = [&](int k) {
-    return exact_sum(q, m.node_count, EachNumber<4>{s.nodes.sample.data() + k});
+    return exact_sum(q, m.node_count, EachNumber<4>{s.nodes.sample.data() + k}, nodes);
   };
   Energies e;
   Real &contact = e.terms[energy_term("contact")], &friction = e.terms[energy_term("friction")];
   e.terms[energy_term("kinetic")] = sample(0);
-  e.terms[energy_term("step_change")] = column_sum(q, s.nodes.step_change) - sample(3);
+  e.terms[energy_term("step_change")] = column_sum(q, s.nodes.step_change, nodes) - sample(3);
   Real& external = e.terms[energy_term("external")];
-  external = column_sum(q, s.nodes.work_external) - sample(1);
+  external = column_sum(q, s.nodes.work_external, nodes) - sample(1);
   Modules::for_each_of<Port::applied>([&]<class Module>() {  // loads with a term of their own
-    const Real work = column_sum(q, applied_of<Module>(s).work);
+    const Real work = column_sum(q, applied_of<Module>(s).work, nodes);
     e.terms[energy_term(Module::name)] = work;
     external -= work;
   });
   e.terms[energy_term("radiated")] =
-      column_sum(q, s.nodes.radiated) - column_sum(q, s.nodes.radiated_sample);
-  e.terms[energy_term("damping")] = column_sum(q, s.nodes.work_damping) - sample(2) +
-                                    s.stopped_energy + column_sum(q, s.springs.dashpot) +
-                                    column_sum(q, s.edges.dashpot) + s.taken_out_dashpot;
+      column_sum(q, s.nodes.radiated, nodes) - column_sum(q, s.nodes.radiated_sample, nodes);
+  e.terms[energy_term("damping")] = column_sum(q, s.nodes.work_damping, nodes) - sample(2) +
+                                    s.stopped_energy + column_sum(q, s.springs.dashpot, slots) +
+                                    column_sum(q, s.edges.dashpot, faces) + s.taken_out_dashpot;
   const Index exposed = Index(s.search.exposed_face.size());
   const Real* const spring = s.springs.state.data();
-  contact = exact_sum(q, 4 * exposed, StoredNormal{spring}) +
-            exact_sum(q, 4 * exposed, StoredShear{spring});
-  if (s.springs.rolling.size() > 0)
-    contact += exact_sum(q, 4 * exposed, StoredRolling{s.springs.rolling.data()});
-  contact += exact_sum(q, exposed, StoredInEdges{s.edges.first.data(), s.edges.state.data()});
-  friction =
-      column_sum(q, s.springs.friction) + column_sum(q, s.edges.friction) + s.taken_out_friction;
+  contact = exact_sum(q, 4 * exposed, StoredNormal{spring}, slots) +
+            exact_sum(q, 4 * exposed, StoredShear{spring}, slots);
+  contact += exact_sum(q, Index(s.springs.rolling.size() / 8),
+                       StoredRolling{s.springs.rolling.data()}, slots);
+  contact +=
+      exact_sum(q, exposed, StoredInEdges{s.edges.first.data(), s.edges.state.data()}, faces);
+  friction = column_sum(q, s.springs.friction, slots) + column_sum(q, s.edges.friction, faces) +
+             s.taken_out_friction;
   e.terms[energy_term("taken_out")] = s.taken_out;
-  for_each_set(m, s, [&](auto, const auto&, const auto& state) {
+  for_each_set(m, s, [&](const auto& kind, const auto&, const auto& state) {
+    const Counted own = s.share.counted(kind.name);
     for_each_energy(state, [&](std::size_t term, const Column<Real>& column) {
-      e.terms[term] += column_sum(q, column);
+      e.terms[term] += column_sum(q, column, own);
     });
   });
   return e;

@@ -13,12 +13,14 @@ enum class Outcome {
   not_finite,
   too_fast,
   lost_contact,
-  missed_contact
+  missed_contact,
+  ghosts_due  // ranks: they must be found anew before the next step
 };
 
 struct Report {
   Outcome outcome = Outcome::steps_done;
-  Index culprit = -1;  // node, or exposed face for a lost contact
+  Index culprit = -1;  // node, or exposed face for a lost contact; of ranks: in the whole model,
+                       // a face by its number among all
   Real value = 0;
 };
 

@@ -9,6 +9,7 @@
 #include "core/elements/views.hpp"
 #include "core/model/block_lists.hpp"
 #include "core/model/phase_timer.hpp"
+#include "core/ranks/ranks.hpp"
 
 namespace cdem {
 
@@ -40,6 +41,7 @@ void find_dilatation(const Model& m, State& s, Queue q) {
                                .own = {s.nodal.own.data(), m.tet4.stride}});
 }
 
+/// Nodes that another rank owns have its average.
 void average(const Model& m, State& s, Queue q, Column<Real>& at_nodes) {
   for_each_item(q, m.node_count, blocks_of(s.nodal.node_blocks),
                 AverageAtNodes{.first = s.nodal.tet_first.data(),
@@ -47,6 +49,7 @@ void average(const Model& m, State& s, Queue q, Column<Real>& at_nodes) {
                                .volume = m.tet4.volume.data(),
                                .own = s.nodal.own.data(),
                                .at_nodes = at_nodes.data()});
+  to_ghosts(s, at_nodes.data(), {.width = 1, .count = 1});
 }
 
 /// The initial dilatation of tets is from initial stress: it is not averaged, and stays in

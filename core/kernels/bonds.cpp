@@ -40,6 +40,12 @@ template void for_each_item(Queue, Index, const StartLabels&);
 template void for_each_item(Queue, Index, const JoinBondedNodes&);
 template void for_each_item(Queue, Index, const JoinBodies&);
 template void for_each_item(Queue, Index, const FinishLabels&);
+template void for_each_item(Queue, Index, const NumberOfNode&);
+template void for_each_item(Queue, Index, const LowerLabels&);
+template bool any_item(Queue, Index, const IsToldLower&);
+template void for_each_item(Queue, Index, const TellLowest&);
+template void for_each_item(Queue, Index, const KeysOfLowest&);
+template void for_each_item(Queue, Index, const JoinSameKeys&);
 template void for_each_item(Queue, Index, const MarkExposedPoints&);
 template void list_rows(Queue, Index, Index, Index, const EdgesOfPoints&, Column<Index>&,
                         Column<Index>&);

@@ -7,15 +7,15 @@
 
 namespace cdem {
 
-template void find_most(Queue, Index, const SquaredSpeed&, Answer<Most>&);
-template void find_most(Queue, Index, const LostContact&, Answer<Most>&);
-template Most most(Queue, Index, const Farthest&);
-template Real exact_sum(Queue, Index, const NodeStiffness&);
-template Real exact_sum(Queue, Index, const AppliedForce&);
-template Real exact_sum(Queue, Index, const CarriedForce&);
-template Real exact_sum(Queue, Index, const StoredNormal&);
-template Real exact_sum(Queue, Index, const StoredShear&);
-template Real exact_sum(Queue, Index, const StoredRolling&);
-template Real exact_sum(Queue, Index, const StoredInEdges&);
+template void find_most(Queue, Index, const SquaredSpeed&, const Flag*, Answer<Most>&);
+template void find_most(Queue, Index, const LostContact&, const Flag*, Answer<Most>&);
+template Most most(Queue, Index, const Farthest&, const Flag*);
+template Real exact_sum(Queue, Index, const NodeStiffness&, const Counted&);
+template Real exact_sum(Queue, Index, const AppliedForce&, const Counted&);
+template Real exact_sum(Queue, Index, const CarriedForce&, const Counted&);
+template Real exact_sum(Queue, Index, const StoredNormal&, const Counted&);
+template Real exact_sum(Queue, Index, const StoredShear&, const Counted&);
+template Real exact_sum(Queue, Index, const StoredRolling&, const Counted&);
+template Real exact_sum(Queue, Index, const StoredInEdges&, const Counted&);
 
 }  // namespace cdem

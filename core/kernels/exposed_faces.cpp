@@ -8,6 +8,7 @@
 namespace cdem {
 
 template void for_each_item(Queue, Index, const ListExposed&);
+template void for_each_item(Queue, Index, const OwnExposed&);
 template bool any_item(Queue, Index, const OpensOrLeaves&);
 template void for_each_item(Queue, Index, const FlagExposed&);
 template void for_each_item(Queue, Index, const MarkFacesOfPairs&);

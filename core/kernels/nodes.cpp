@@ -18,19 +18,19 @@ template void for_each_item(Queue, Index, Blocks, const AdvanceNodes<Dashpots>&)
 template void for_each_item(Queue, Index, const SampleDashpots&);
 template void for_each_item(Queue, Index, const NodeMomentum&);
 template void for_each_item(Queue, Index, const KeepPeak&);
-template void find_most(Queue, Index, const NodeFrequency&, Answer<Most>&);
+template void find_most(Queue, Index, const NodeFrequency&, const Flag*, Answer<Most>&);
 template void for_each_item(Queue, Index, const DescribeHighest&);
 template void list_rows(Queue, Index, Index, Index, const ContactCorners&, Column<Index>&,
                         Column<Index>&);
 template void for_each_item(Queue, Index, const SampleNodes&);
 template void for_each_item(Queue, Index, const SumApplied&);
 template void for_each_item(Queue, Index, const AddApplied&);
-template Real exact_sum(Queue, Index, const KineticEnergy&);
-template Real exact_sum(Queue, Index, const StopNode&);
+template Real exact_sum(Queue, Index, const KineticEnergy&, const Counted&);
+template Real exact_sum(Queue, Index, const StopNode&, const Counted&);
 template void for_each_item(Queue, Index, const RememberNode&);
 template void for_each_item(Queue, Index, const SlowNode&);
-template Real exact_sum(Queue, Index, const SlowedWork&);
-template Real exact_sum(Queue, Index, const StiffnessInMotion&);
-template Real exact_sum(Queue, Index, const MassInMotion&);
+template Real exact_sum(Queue, Index, const SlowedWork&, const Counted&);
+template Real exact_sum(Queue, Index, const StiffnessInMotion&, const Counted&);
+template Real exact_sum(Queue, Index, const MassInMotion&, const Counted&);
 
 }  // namespace cdem

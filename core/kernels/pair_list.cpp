@@ -4,6 +4,7 @@
 #include "core/contact/broad_phase/edge_edge_pairs.hpp"
 #include "core/contact/broad_phase/exceeds_skin.hpp"
 #include "core/contact/broad_phase/exposed_patches.hpp"
+#include "core/contact/broad_phase/near_boxes.hpp"
 #include "core/contact/broad_phase/patch_pairs.hpp"
 #include "core/contact/force/stiffness_sums.hpp"
 #include "core/contact/pair_list/outer_faces.hpp"
@@ -21,6 +22,7 @@ template void for_each_item(Queue, Index, const CopyBoxes&);
 template void for_each_item(Queue, Index, const GroupBoxes&);
 template void for_each_item(Queue, Index, const GroupGroups&);
 template void for_each_item(Queue, Index, const FindMortonCodes&);
+template void for_each_item(Queue, Index, const FlagNear&);
 template void list_items(Queue, Index, const ListPatchPairs&, Column<PatchPair>&);
 template void keep_items(Queue, const MayMeet&, Column<PatchPair>&);
 template void for_each_item(Queue, Index, const SortByOther&);

@@ -15,8 +15,8 @@ template void set_all(Queue, Index, Real*, Real);
 template void copy_items(Queue, Index, const Flag*, Flag*);
 template void copy_items(Queue, Index, const Real*, Real*);
 template void select_items(Queue, Index, const IsSet&, Column<Index>&);
-template Real exact_sum(Queue, Index, const EachNumber<>&);
-template Real exact_sum(Queue, Index, const EachNumber<4>&);
+template Real exact_sum(Queue, Index, const EachNumber<>&, const Counted&);
+template Real exact_sum(Queue, Index, const EachNumber<4>&, const Counted&);
 
 namespace {
 
@@ -33,8 +33,8 @@ void add_up(Queue queue, Index count, const Index* counts, Index* first, Answer<
   for_each_item(queue, 1, TellSum{first + count, sum.data()});
 }
 
-Real column_sum(Queue queue, const Column<Real>& column) {
-  return exact_sum(queue, Index(column.size()), EachNumber<>{column.data()});
+Real column_sum(Queue queue, const Column<Real>& column, const Counted& counted) {
+  return exact_sum(queue, Index(column.size()), EachNumber<>{column.data()}, counted);
 }
 
 #if defined(CDEM_CUDA)
@@ -108,12 +108,13 @@ std::int64_t* zeroed_words(Queue queue) {
   check(cudaMemsetAsync(words, 0, ExactSum::words * sizeof *words, stream_of(queue)));
   return words;
 }
-Real sum_of_words(Queue queue, const std::int64_t* words) {
+Real sum_of_words(Queue queue, const std::int64_t* words, Exchange* ranks) {
   std::int64_t here[ExactSum::words];
   check(cudaMemcpyAsync(here, words, sizeof here, cudaMemcpyDefault, stream_of(queue)));
   finish(queue);
   ExactSum sum;
   sum.add(here);
+  sum.add_ranks(ranks);
   return sum.value();
 }
 
@@ -230,13 +231,14 @@ void sort_pairs(Queue queue, Index count, std::uint64_t* keys, Index* values) {
                           .other_values = scratch<Index>(count)});
 }
 
-Real exact_sum_of(Queue queue, Index count, const Real* values) {
+Real exact_sum_of(Queue queue, Index count, const Real* values, Exchange* ranks) {
   std::int64_t* const words = scratch<std::int64_t>(ExactSum::words);
   for_each_item(queue, 1, AddUp{count, values, words});
   finish(queue);
   const Transfer transfer;
   ExactSum sum;
   sum.add(words);
+  sum.add_ranks(ranks);
   return sum.value();
 }
 

@@ -23,6 +23,6 @@ template void for_each_item(Queue, Index, const Combine&);
 template void for_each_item(Queue, Index, const UnbalancedForce&);
 template void for_each_item(Queue, Index, const MoveToRest&);
 template void for_each_item(Queue, Index, const StopAtRest&);
-template Real exact_sum(Queue, Index, const DotOfThree&);
+template Real exact_sum(Queue, Index, const DotOfThree&, const Counted&);
 
 }  // namespace cdem

@@ -42,7 +42,33 @@ struct PairSet {
 /// Do the faces of the pairs share their vertices? Else they overlap.
 inline bool conforms(const PairSet& p) { return p.point_first.size() == 0; }
 
-struct Model {
+/// Numbers of a model that are no arrays of rows: all parts of it have the same.
+struct Settings {
+  Vec3<Real> gravity{0, 0, 0};
+  std::vector<std::vector<Real>> curve_time, curve_factor;
+  InterfaceTraits interface_traits;  // properties of the interfaces for a step, see note_interfaces
+  Formulation formulation = Formulation::corotational;
+  SearchRules rules;
+  Real bond_indentation_triangle = 0, bond_indentation_quad = 0;
+  bool semi_edges = true;
+  bool check_search = false;   // compare every search with an all-pairs search
+  Index rebuild_interval = 0;  // 0: by displacement; else the paper's every so many steps
+  NodeDamping damping{0, 0};
+  bool initial_stress = false;       // does the rock begin under stress?
+  bool loose_pairs = false;          // do joints without strength begin as pairs, broken?
+  Real initial_lift = 0;             // of rules.lifted, for initial tractions  [m]
+  bool lumped = false;               // lumped masses for all: quicker to rest, wrong inertia
+  bool lumped_while_bonded = false;  // lumped masses for blocks with bonds, see list_lumped
+  Real stiffness_damping = 0;        // Rayleigh, fraction of critical at the stability limit
+  Real damping_time = 0;             // Rayleigh, of elements and of bonds that hold  [s]
+  MaxwellBranches maxwell;
+  Real contact_damping = 0;  // fraction of critical
+  Real step_safety = 0.8;
+  Real step_given = 0;   // 0: automatic
+  Real speed_limit = 0;  // faster than this the run has gone wrong  [m/s]
+};
+
+struct Model : Settings {
   // nodes
   Index node_count = 0;
   Column<Index> node_block, node_place;
@@ -74,7 +100,6 @@ struct Model {
   Column<Index> interface_of;
   Column<Interface> interfaces;
   Column<Real> interface_parameters;  // [interface][parameter_row]
-  InterfaceTraits interface_traits;   // their properties for a step, see note_interfaces
 
   Modules::Data<GivenPart> modules;
 
@@ -84,34 +109,11 @@ struct Model {
   Column<Index> corner_first, corner;
 
   // loads and supports
-  Vec3<Real> gravity{0, 0, 0};
   Column<Index> load_first, load_curve;
   Column<Real> load_force;
   Column<Index> support, support_curve;
   Column<Flag> support_component;
   Column<Real> support_velocity;
-  std::vector<std::vector<Real>> curve_time, curve_factor;
-
-  // rules
-  Formulation formulation = Formulation::corotational;
-  SearchRules rules;
-  Real bond_indentation_triangle = 0, bond_indentation_quad = 0;
-  bool semi_edges = true;
-  bool check_search = false;   // compare every search with an all-pairs search
-  Index rebuild_interval = 0;  // 0: by displacement; else the paper's every so many steps
-  NodeDamping damping{0, 0};
-  bool initial_stress = false;       // does the rock begin under stress?
-  bool loose_pairs = false;          // do joints without strength begin as pairs, broken?
-  Real initial_lift = 0;             // of rules.lifted, for initial tractions  [m]
-  bool lumped = false;               // lumped masses for all: quicker to rest, wrong inertia
-  bool lumped_while_bonded = false;  // lumped masses for blocks with bonds, see list_lumped
-  Real stiffness_damping = 0;        // Rayleigh, fraction of critical at the stability limit
-  Real damping_time = 0;             // Rayleigh, of elements and of bonds that hold  [s]
-  MaxwellBranches maxwell;
-  Real contact_damping = 0;  // fraction of critical
-  Real step_safety = 0.8;
-  Real step_given = 0;   // 0: automatic
-  Real speed_limit = 0;  // faster than this the run has gone wrong  [m/s]
 };
 
 }  // namespace cdem

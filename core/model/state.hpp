@@ -7,6 +7,7 @@
 #include "core/base/column.hpp"
 #include "core/base/short_numbers.hpp"
 #include "core/model/modules.hpp"
+#include "core/model/share.hpp"
 #include "core/records/contact_records.hpp"
 #include "core/records/pair_status.hpp"
 
@@ -205,7 +206,9 @@ struct SearchState {
   OuterList outer;
   InnerList inner;
   Answer<Due> due;
-  std::int64_t asked_step = -1;  // before which step that was asked; -1: it was not
+  std::int64_t asked_step = -1;    // before which step that was asked; -1: it was not
+  std::int64_t decided_step = -1;  // before which step a rebuild was decided on; -1: none was
+  bool rebuild_is_due = false;     // what was decided
 };
 
 /// Categories of the wall time of steps.
@@ -224,6 +227,7 @@ struct Relief {
 };
 
 struct State {
+  Share share;           // of a rank; not part of the results
   Real seconds[5] = {};  // wall time so far by Phase; not part of the results
   Real time = 0;
   Real loads_time = 0;       // of load_factor and velocity_factor  [s]

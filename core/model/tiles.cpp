@@ -27,20 +27,27 @@ void visit_corners(const ElementSet& e, const ElementTiles& tiles, const Act& ac
   }
 }
 
-/// A tile ends where the nodes of another block of elements might be too many.
+/// A tile ends where the nodes of another block of elements might be too many; a rank has the
+/// tiles of the whole model, `given` by block of elements, for sums on nodes go tile by tile.
 static_assert(most_tile_nodes >= 8 * block_size);
-void divide(const Model& m, const ElementSet& e, ElementTiles& tiles) {
+void divide(const Model& m, const ElementSet& e, const Column<Index>* given, ElementTiles& tiles) {
   std::vector<Index> block_first, node_first, node;
   tiles.place.resize(std::size_t(e.corners) * e.stride);
   const auto nodes = on_host(e.nodes);
   const auto places = on_host(tiles.place);
+  const Index* const tile_of = given ? on_host(*given).data() : nullptr;
+  const auto begins = [&](Index block, Index nodes_so_far) {
+    if (block == 0) return true;
+    if (given) return tile_of[block] != tile_of[block - 1];
+    return nodes_so_far + 8 * block_size > most_tile_nodes;
+  };
   std::vector<Index> place_of(m.node_count, -1);  // in the list of nodes
   Index first = 0;
   for (Index i = 0; i < e.count; ++i) {
     const Index size = Index(node.size());
     if (i % block_size == 0) {
       node_first.push_back(size);
-      if (i == 0 || size - first + 8 * block_size > most_tile_nodes) {
+      if (begins(i / block_size, size - first)) {
         block_first.push_back(i / block_size);
         first = size;
       }
@@ -66,8 +73,9 @@ void divide(const Model& m, const ElementSet& e, ElementTiles& tiles) {
 
 void list_tiles(const Model& m, State& s) {
   std::vector<Index> first(m.node_count + 1);
-  for_each_element_set(m, s, [&](auto, const ElementSet& e, ElementState& es) {
-    divide(m, e, es.tiles);
+  for_each_element_set(m, s, [&](const auto& kind, const ElementSet& e, ElementState& es) {
+    const auto given = s.share.tiles.find(kind.name);
+    divide(m, e, given != s.share.tiles.end() ? &given->second : nullptr, es.tiles);
     for (const Index node : on_host(es.tiles.node)) ++first[node + 1];
   });
   for (Index i = 0; i < m.node_count; ++i) first[i + 1] += first[i];

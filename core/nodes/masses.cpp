@@ -1,12 +1,15 @@
 // masses.cpp - see masses.hpp.
 #include "core/nodes/masses.hpp"
 
+#include <vector>
+
 #include "core/base/primitives.hpp"
 #include "core/model/force_sets.hpp"
 #include "core/nodes/lumped_blocks.hpp"
 #include "core/nodes/node_energy.hpp"
 #include "core/nodes/relaxing_node.hpp"
 #include "core/nodes/views.hpp"
+#include "core/ranks/ranks.hpp"
 
 namespace cdem {
 
@@ -19,7 +22,7 @@ KineticEnergy kinetic_energies(const Model& m, const State& s) {
 }  // namespace
 
 Real energy_of_motion(const Model& m, const State& s) {
-  return exact_sum({}, m.node_count, kinetic_energies(m, s));
+  return exact_sum({}, m.node_count, kinetic_energies(m, s), s.share.counted("nodes"));
 }
 
 namespace {
@@ -53,6 +56,21 @@ void change_mass(Model& m, State& s, bool lumped) {
 
 namespace {
 
+/// A block that several ranks have is flagged if it is on any of them.
+void join_cut_blocks(const Model& m, const State& s, Column<Flag>& whole) {
+  if (s.share.cut_blocks == 0) return;
+  const Transfer transfer;
+  std::vector<std::int64_t> flags(s.share.cut_blocks);
+  const auto block = on_host(s.share.cut_block);
+  const auto first = on_host(m.block_first);
+  const auto flag = on_host(whole);
+  for (Index i = 0; i < m.node_count; ++i)
+    if (block[i] >= 0) flags[block[i]] |= flag[first[i]];
+  s.share.exchange->add_up(flags.data(), s.share.cut_blocks);
+  for (Index i = 0; i < m.node_count; ++i)
+    if (block[i] >= 0 && flags[block[i]] > 0) flag[first[i]] = 1;
+}
+
 /// Flags [node] of the nodes of blocks with dashpots to the ground, or with bonds.
 Column<Flag> lumped_nodes(const Model& m, const State& s) {
   Column<Flag> whole, lumped;  // the first by block's first node
@@ -70,6 +88,7 @@ Column<Flag> lumped_nodes(const Model& m, const State& s) {
                                      .block_first = m.block_first.data(),
                                      .whole = whole.data()});
   });
+  join_cut_blocks(m, s, whole);
   for_each_item({}, m.node_count, SpreadInBlock{whole.data(), m.block_first.data(), lumped.data()});
   return lumped;
 }
@@ -85,7 +104,7 @@ void list_lumped(const Model& m, State& s) {
   Column<Flag> now = lumped_nodes(m, s);
   if (lumped.size() == 0)  // of a new or a restored state: nothing changes
     lumped.swap(now);
-  else if (any_item({}, m.node_count, FlagsDiffer{now.data(), lumped.data()}))
+  else if (any_rank(s, any_item({}, m.node_count, FlagsDiffer{now.data(), lumped.data()})))
     book_change(m, s, [&] { lumped.swap(now); });
 }
 
@@ -107,7 +126,8 @@ void stop_motion(const Model& m, State& s) {
                                          .since = 0.5 * s.dt_last,
                                          .motion = s.nodes.motion.data(),
                                          .work_external = s.nodes.work_external.data(),
-                                         .work_damping = s.nodes.work_damping.data()});
+                                         .work_damping = s.nodes.work_damping.data()},
+                                s.share.counted("nodes"));
   s.dt_last = 0;
 }
 

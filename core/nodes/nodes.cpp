@@ -187,7 +187,8 @@ bool damps_nodes(const Model& m, const State& s) {
 }
 
 Real kinetic_energy(const Model& m, const State& s) {
-  return exact_sum({}, m.node_count, EachNumber<4>{s.nodes.sample.data()});
+  return exact_sum({}, m.node_count, EachNumber<4>{s.nodes.sample.data()},
+                   s.share.counted("nodes"));
 }
 
 }  // namespace cdem

@@ -42,7 +42,8 @@ void book_slowed(const Model& m, State& s) {
                                            .supports = support_columns(m, s),
                                            .remembered = s.nodes.relax.data(),
                                            .half_step = 0.5 * s.dt_last,
-                                           .work_external = s.nodes.work_external.data()});
+                                           .work_external = s.nodes.work_external.data()},
+                                s.share.counted("nodes"));
 }
 
 }  // namespace
@@ -63,11 +64,12 @@ void scale_masses_if_due(const Model& m, State& s) {
 void relax_adaptively(const Model& m, State& s) {
   book_slowed(m, s);
   const Real* remembered = s.nodes.relax.data();
-  const Real stiff =
-      exact_sum({}, m.node_count,
-                StiffnessInMotion{.undamped = undamped_forces(s), .remembered = remembered});
+  const Real stiff = exact_sum(
+      {}, m.node_count, StiffnessInMotion{.undamped = undamped_forces(s), .remembered = remembered},
+      s.share.counted("nodes"));
   const Real heavy = exact_sum(
-      {}, m.node_count, MassInMotion{.mass = lumped_masses(m, s).data(), .remembered = remembered});
+      {}, m.node_count, MassInMotion{.mass = lumped_masses(m, s).data(), .remembered = remembered},
+      s.share.counted("nodes"));
   // the damping force lags by half a step, so w dt < sqrt(4 - 2 c dt) must hold for the fastest
   // mode
   const Real most = 1.8 * (1 - relax_safety * relax_safety) / s.dt_last;

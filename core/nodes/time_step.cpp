@@ -9,6 +9,7 @@
 #include "core/nodes/masses.hpp"
 #include "core/nodes/node_frequency.hpp"
 #include "core/nodes/views.hpp"
+#include "core/ranks/ranks.hpp"
 
 namespace cdem {
 
@@ -40,14 +41,25 @@ NodeFrequency node_frequency(const Model& m, const State& s, bool held) {
           .held = held};
 }
 
+/// The highest of all ranks; of those that are equal, of the lowest node.
+HighestNode highest_of_ranks(const State& s, HighestNode own) {
+  own.node = whole_node(s, own.node);
+  HighestNode highest = own;
+  for (const HighestNode& one : of_all_ranks(s, own))
+    if (one.squared > highest.squared ||
+        (one.squared == highest.squared && one.node < highest.node))
+      highest = one;
+  return highest;
+}
+
 /// The highest frequency, squared, and the node that has it.
 Real highest_frequency_squared(const Model& m, const State& s, bool held, StepLimit& limit) {
   const NodeFrequency nodes = node_frequency(m, s, held);
   Answer<Most>& most = answer_of_thread<Most>();
   Answer<HighestNode>& answer = answer_of_thread<HighestNode>();
-  find_most({}, m.node_count, nodes, most);
+  find_most({}, m.node_count, nodes, s.share.counted("nodes").own, most);
   for_each_item({}, 1, DescribeHighest{nodes, most.data(), answer.data()});
-  const HighestNode highest = answer.read({});
+  const HighestNode highest = highest_of_ranks(s, answer.read({}));
   limit.node = highest.node;
   limit.element_frequency_squared = highest.element;
   limit.contact_frequency_squared = highest.contact;
@@ -63,11 +75,13 @@ StepLimit step_limit(const Model& m, const State& s) {
   // step still resolves curves, histories and ends of stages
   Real largest = highest_frequency_squared(m, s, false, limit);
   if (!(largest > 0)) largest = highest_frequency_squared(m, s, true, limit);
+  Real of_modules = 0;
   Modules::for_each([&]<class Module>() {
     if constexpr (requires { Module::frequency_squared(given_of<Module>(m), Real()); })
-      largest =
-          std::max(largest, Module::frequency_squared(given_of<Module>(m), m.maxwell.stiffer()));
+      of_modules =
+          std::max(of_modules, Module::frequency_squared(given_of<Module>(m), m.maxwell.stiffer()));
   });
+  for (const Real of_rank : of_all_ranks(s, of_modules)) largest = std::max(largest, of_rank);
   // a dashpot of ratio xi at the highest frequency shortens the stable step by this factor
   const Real rayleigh =
       0.5 * (m.damping.mass / std::sqrt(largest) + m.damping_time * std::sqrt(largest));
@@ -114,7 +128,7 @@ void renew_step(const Model& m, State& s) {
 }
 
 bool step_is_due(const State& s) {
-  return has_contact_pairs(s) || s.step % step_check_interval == 0;
+  return has_contact_pairs(s) || s.share.pairs_elsewhere || s.step % step_check_interval == 0;
 }
 
 void advance_clock(State& s) {
@@ -146,6 +160,7 @@ void scale_masses(const Model& m, State& s) {
     if (needed > masses[i] && relax.size() > 0) relax[8 * std::size_t(i) + 3] *= masses[i] / needed;
     masses[i] = needed;
   }
+  to_ghosts(s, s.nodes.relax_mass.data(), {.width = 1, .count = 1});
   s.stopped_energy += before - energy_of_motion(m, s);
 }
 

@@ -9,7 +9,7 @@ namespace cdem {
 namespace {
 
 Real dot(Queue q, const Column<Real>& a, const Column<Real>& b) {
-  return exact_sum(q, Index(a.size() / 3), DotOfThree{a.data(), b.data()});
+  return exact_sum(q, Index(a.size() / 3), DotOfThree{a.data(), b.data()}, {});
 }
 
 /// y = a x + b y

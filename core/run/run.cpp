@@ -19,6 +19,7 @@
 #include "core/nodes/nodes.hpp"
 #include "core/nodes/sleep.hpp"
 #include "core/nodes/time_step.hpp"
+#include "core/ranks/ranks.hpp"
 #include "core/step.hpp"
 
 namespace cdem {
@@ -68,6 +69,7 @@ void prepare(const Model& m, State& s) {
   s.face_geometry.resize(8 * exposed);
   s.contact_force.resize(16 * exposed);
   for (const AfterResume& one : after_resume) one.rebuild(m, s);
+  s.share.pairs_elsewhere = s.share.exchange && any_rank(s, names_pairs(s.search.outer));
 }
 
 namespace {
@@ -108,7 +110,8 @@ void end_step(const Model& m, State& s, const Goal& goal, const StepPlan& plan) 
 
 /// Why the run ends after this step, or `steps_done` where it may go on.
 Report report_of(const Model& m, const State& s, const Goal& goal, const Place& place) {
-  if (s.missed > 0) return {Outcome::missed_contact, -1, Real(s.missed)};
+  if (m.check_search && any_rank(s, s.missed > 0))
+    return {Outcome::missed_contact, -1, Real(s.missed)};
   if (!place.last && !place.scheduled) return {};
   const Report health = check_health(m, s);
   if (health.outcome != Outcome::steps_done) return health;
@@ -120,8 +123,14 @@ Report report_of(const Model& m, const State& s, const Goal& goal, const Place& 
   return {};
 }
 
+/// Ranks: may the coming rebuild list pairs with elements that are not here?
+bool ghosts_are_due(const Model& m, State& s) {
+  return s.share.exchange && foresee_rebuild(m, s) && leaves_fence(m, s);
+}
+
 Report take_steps(const Model& m, State& s, const Goal& goal) {
   for (std::int64_t n = 1; n <= goal.steps; ++n) {
+    if (ghosts_are_due(m, s)) return {Outcome::ghosts_due, -1, 0};
     if (goal.relaxation == Relaxation::adaptive) scale_masses_if_due(m, s);
     const Place place = place_of(s, goal, n);
     const StepPlan plan = plan_step(m, s, goal, place);
@@ -139,7 +148,7 @@ Report run(const Model& m, State& s, const Goal& goal) {
   const RunOnDevice on_device;
   begin_run(s, goal);
   const Report report = take_steps(m, s, goal);
-  s.search.asked_step = -1;  // something may move nodes before the next run
+  s.search.asked_step = s.search.decided_step = -1;  // something may move nodes before the next run
   fit_contacts_by_target(s);
   finish({});  // Python may have views of arrays
   return report;

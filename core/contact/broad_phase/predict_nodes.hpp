@@ -105,4 +105,58 @@ struct PredictNodes {
   }
 };
 
+// Of ranks: the path of a node that is not own is its owner's.
+
+/// Copy the rows of predicted nodes to places by node.
+struct PathsByNode {
+  const Index* predicted_nodes;
+  const Real* predicted;
+  Real* by_node;  // rows of 8
+  CDEM_HD void operator()(One item) const {
+    const Real* from = predicted + 8 * std::size_t(item.i);
+    Real* to = by_node + 8 * std::size_t(predicted_nodes[item.i]);
+    Row::at(from).store(to);
+    Row::at(from + 4).store(to + 4);
+  }
+};
+/// Take the rows of nodes that are not own; only the owner asks whether they leave their skins.
+struct TakePaths {
+  const Index* predicted_nodes;
+  const Flag* own;
+  const Real* by_node;
+  Real* predicted;
+  CDEM_HD void operator()(One item) const {
+    const Index node = predicted_nodes[item.i];
+    if (own[node]) return;
+    const Real* from = by_node + 8 * std::size_t(node);
+    Real* to = predicted + 8 * std::size_t(item.i);
+    Row::at(from).store(to);
+    Row::at(from + 4).store(to + 4);
+    to[3] = infinity;  // see PredictedNode
+  }
+};
+
+/// May the coming prediction lead an own node out of the box that ghosts were found for? Its skin
+/// has been taken from the box.
+struct LeavesFence {
+  RigidMotion rigid;
+  const Flag* own;
+  const Real* fence;  // rows of 8: lowest x y z, a pad, highest x y z, a pad  [m]
+  Real lookahead_time;
+
+  CDEM_HD bool operator()(One node) const {
+    if (!own[node.i]) return false;
+    const Real* box = fence + 8 * std::size_t(node.i);
+    const Vec3<Real> now = rigid.nodes.position(node.i);
+    const Vec3<Real> then = now + lookahead_time * rigid.at(node.i);
+    return is_outside(box, now) || is_outside(box, then);
+  }
+
+ private:
+  CDEM_HD static bool is_outside(const Real* box, const Vec3<Real>& x) {
+    return x.x < box[0] || x.y < box[1] || x.z < box[2] || x.x > box[4] || x.y > box[5] ||
+           x.z > box[6];
+  }
+};
+
 }  // namespace cdem

@@ -7,6 +7,7 @@
 #include "core/contact/broad_phase/exceeds_skin.hpp"
 #include "core/contact/broad_phase/predict_nodes.hpp"
 #include "core/model/element_corners.hpp"
+#include "core/ranks/ranks.hpp"
 
 namespace cdem {
 
@@ -56,17 +57,58 @@ void place_predicted_nodes(const Model& m, State& s) {
   for_each_item({}, Index(nodes.size()), PlacePredicted{nodes.data(), place.data()});
 }
 
+namespace {
+
+/// How long the last list has held, and how far the next one looks ahead  [steps].
+struct Outlook {
+  std::int64_t lasted;
+  Index ahead;
+
+  static Outlook of(const Model& m, const State& s) {
+    constexpr Index fewest = 20, steps = 200;
+    // nodes of rubble that collides leave their skins long before a far lookahead time, which would
+    // make long lists for nothing
+    const std::int64_t lasted = s.built_step < 0 ? steps : s.step - s.built_step;
+    const Index ahead = std::clamp<std::int64_t>(2 * lasted, fewest, steps);
+    return {lasted, m.rebuild_interval > 0 ? m.rebuild_interval : ahead};
+  }
+};
+
+/// Paths of nodes that other ranks own.
+void take_paths(const Model& m, State& s) {
+  if (!s.share.exchange) return;
+  const OuterList& outer = s.search.outer;
+  const Index count = Index(outer.predicted_nodes.size());
+  const Index* const nodes = outer.predicted_nodes.data();
+  Real* const predicted = s.search.outer.predicted.data();
+  Column<Real> by_node;
+  by_node.renew(8 * std::size_t(m.node_count));
+  set_all({}, Index(by_node.size()), by_node.data(), Real(0));
+  for_each_item({}, count, PathsByNode{nodes, predicted, by_node.data()});
+  to_ghosts(s, by_node.data(), {.width = 8, .count = 8});
+  for_each_item({}, count,
+                TakePaths{.predicted_nodes = nodes,
+                          .own = s.share.counted("nodes").own,
+                          .by_node = by_node.data(),
+                          .predicted = predicted});
+}
+
+}  // namespace
+
+bool leaves_fence(const Model& m, const State& s) {
+  const LeavesFence leaves{.rigid = rigid_motion(m, s),
+                           .own = s.share.counted("nodes").own,
+                           .fence = s.share.fence.data(),
+                           .lookahead_time = s.dt * Outlook::of(m, s).ahead};
+  return any_rank(s, any_item({}, m.node_count, leaves));
+}
+
 void predict_motion(const Model& m, State& s) {
-  constexpr Index fewest = 20, steps = 200;
-  constexpr Real most = 0.1;   // skin in parts of the smallest L of the node's faces
   constexpr Real period = 10;  // of vibrations, in steps
   OuterList& outer = s.search.outer;
-  // nodes of rubble that collides leave their skins long before a far lookahead time, which would
-  // make long lists for nothing
-  const std::int64_t lasted = s.built_step < 0 ? steps : s.step - s.built_step;
-  outer.least_skin = least_skin(s, lasted);
-  const Index ahead = std::clamp<std::int64_t>(2 * lasted, fewest, steps);
-  outer.lookahead_time = s.dt * (m.rebuild_interval > 0 ? m.rebuild_interval : ahead);
+  const Outlook outlook = Outlook::of(m, s);
+  outer.least_skin = least_skin(s, outlook.lasted);
+  outer.lookahead_time = s.dt * outlook.ahead;
   outer.built_time = s.time;
   Column<Index> place_before;
   Column<Real> predicted_before;
@@ -84,8 +126,9 @@ void predict_motion(const Model& m, State& s) {
                              .lookahead_time = outer.lookahead_time,
                              .period = period * s.dt,
                              .least = outer.least_skin,
-                             .most = most,
+                             .most = widest_skin,
                              .predicted = outer.predicted.data()});
+  take_paths(m, s);
 }
 
 void ask_if_skin_is_exceeded(const State& s, const Column<Real>& predicted, Real from,

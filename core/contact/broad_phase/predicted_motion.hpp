@@ -11,10 +11,16 @@ inline PredictedNodes predicted_nodes(const State& s) {
   return {s.search.outer.node_predicted.data(), s.search.outer.predicted.data()};
 }
 
+/// Skin of a node at most, in parts of the smallest L of its faces.
+inline constexpr Real widest_skin = 0.1;
+
 /// Predict the paths of the nodes of exposed faces, straight on with the rigid motion of their
 /// elements (which leaves the elements' vibrations out), and their skins: the deviation that the
 /// change of velocity since the last rebuild would make once more.
 void predict_motion(const Model& model, State& state);
+
+/// May the next prediction lead a node of any rank out of the box that ghosts were found for?
+bool leaves_fence(const Model& model, const State& state);
 
 /// Give nodes their places among the predicted ones.
 void place_predicted_nodes(const Model& model, State& state);

@@ -140,7 +140,25 @@ void renew_exposed(const Model& m, State& s, const Column<Flag>& open) {
   }
 }
 
+namespace {
+
+void list_own_exposed(State& s) {
+  if (!s.share.exchange) return;
+  const std::size_t count = s.search.exposed_face.size();
+  Column<Flag>&own = s.share.own["exposed"], &slots = s.share.own["slots"];
+  own.renew(count);
+  slots.renew(4 * count);
+  for_each_item({}, Index(count),
+                OwnExposed{.exposed_face = s.search.exposed_face.data(),
+                           .own_face = s.share.counted("faces").own,
+                           .own = own.data(),
+                           .own_slots = slots.data()});
+}
+
+}  // namespace
+
 void list_exposed(const Model& m, State& s) {
+  list_own_exposed(s);
   SearchState& search = s.search;
   const std::size_t count = search.exposed_face.size();
   search.exposed.renew(count);

@@ -31,4 +31,16 @@ struct ListExposed {
   }
 };
 
+/// Which exposed faces are own, of a rank, and their slots.
+struct OwnExposed {
+  const Index* exposed_face;
+  const Flag* own_face;
+  Flag *own, *own_slots;
+  CDEM_HD void operator()(One x) const {
+    const Flag is_own = own_face[exposed_face[x.i]];
+    own[x.i] = is_own;
+    for (Index k = 0; k < 4; ++k) own_slots[4 * std::size_t(x.i) + k] = is_own;
+  }
+};
+
 }  // namespace cdem

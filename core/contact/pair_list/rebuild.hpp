@@ -15,6 +15,9 @@ void ask_what_is_due(const Model& model, State& state);
 /// unless that was done at the end of the step before.
 bool pair_list_is_due(const Model& model, State& state);
 
+/// The same ahead of a step, whose own question then gets this answer.
+bool foresee_rebuild(const Model& model, State& state);
+
 /// Release broken bonds, expose faces and rebuild the outer pair list with all that follows from
 /// it: corner rows, sleep, the stable step.
 void rebuild_pair_list(const Model& model, State& state, const StepPlan& plan);

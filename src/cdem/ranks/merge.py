@@ -283,7 +283,9 @@ class _Whole:
 
     def _labels(self, name: str) -> NDArray[Any]:
         """The lowest node of those that any rank has under one label."""
-        links = np.concatenate([one.links.get(name, np.zeros((0, 2), np.int64)) for one in self._sent])
+        links = np.concatenate(
+            [one.links.get(name, np.zeros((0, 2), np.int64)) for one in self._sent]
+        )
         if not len(links):
             return np.zeros(0, self._types[name])
         return components(self._counts["nodes"], *links.T).astype(self._types[name])

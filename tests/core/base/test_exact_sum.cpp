@@ -25,7 +25,7 @@ struct TimesMade {
 Real sum_of(const std::vector<Real>& numbers) {
   Column<Real> given;
   given.assign(numbers);
-  return column_sum({}, given);
+  return column_sum({}, given, {});
 }
 
 /// The same by the class that the CPU uses, whatever the device.
@@ -104,7 +104,7 @@ TEST_CASE("nothing is lost, however large what cancels") {
 
 TEST_CASE("sums are those of integers, and of long numbers within two units in the last place") {
   for (const Index count : {0, 1, 1023, 1024, 1025, 5000})
-    CHECK(exact_sum({}, count, OwnNumber{}) == 0.5 * count * (count - 1.0));
+    CHECK(exact_sum({}, count, OwnNumber{}, {}) == 0.5 * count * (count - 1.0));
   Random random(2);
   for (int round = 0; round < 50; ++round) {
     std::vector<Real> numbers;
@@ -167,14 +167,14 @@ TEST_CASE("a number that is none or too large is one wherever it stands") {
 TEST_CASE("terms are made once, and items of an array may lie apart") {
   Column<Index> made;
   made.resize(3000);
-  CHECK(exact_sum({}, 3000, TimesMade{made.data()}) == 3000);
+  CHECK(exact_sum({}, 3000, TimesMade{made.data()}, {}) == 3000);
   const std::vector<Index> times = fetch(made);
   CHECK(std::count(times.begin(), times.end(), 1) == 3000);
   std::vector<Real> numbers(4000, 1000);
   for (Index i = 1; i < 4000; i += 4) numbers[i] = 1;
   Column<Real> rows;
   rows.assign(numbers);
-  CHECK(exact_sum({}, 1000, EachNumber<4>{rows.data() + 1}) == 1000);
+  CHECK(exact_sum({}, 1000, EachNumber<4>{rows.data() + 1}, {}) == 1000);
 }
 
 }  // namespace cdem::test

@@ -122,7 +122,7 @@ TEST_CASE("most is the first of the largest numbers") {
     std::vector<Real> numbers(count);
     for (Real& x : numbers) x = Real(random.below(1 + count / 3)) - 5;  // many are equal
     const Column<Real> given = column_of(numbers);
-    const Most found = most({}, count, NumberAt{given.data()});
+    const Most found = most({}, count, NumberAt{given.data()}, nullptr);
     const auto largest = std::max_element(numbers.begin(), numbers.end());
     CHECK(found.item == (count == 0 ? -1 : Index(largest - numbers.begin())));
     if (count > 0) CHECK(found.value == *largest);
@@ -134,7 +134,7 @@ TEST_CASE("what is no number is not the most, nor is -infinity") {
   const Real none = std::numeric_limits<Real>::quiet_NaN();
   const auto most_of_these = [](const std::vector<Real>& numbers) {
     const Column<Real> given = column_of(numbers);
-    return most({}, Index(numbers.size()), NumberAt{given.data()}).item;
+    return most({}, Index(numbers.size()), NumberAt{given.data()}, nullptr).item;
   };
   CHECK(most_of_these({none, -2, none, -1, none}) == 3);
   CHECK(most_of_these({none, -infinity}) == -1);

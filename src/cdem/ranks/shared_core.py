@@ -1,0 +1,254 @@
+"""A model shared out to ranks, with the interface of `Core`."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cdem._native import core as native
+from cdem.ranks.buffers import packed, unpacked
+from cdem.ranks.exchange import Exchange, Neighbour
+from cdem.ranks.merge import own_rows, put_together
+from cdem.ranks.parts import Fences, Mesh, Parts, divide, needed
+from cdem.ranks.slices import Slice
+
+if TYPE_CHECKING:
+    from cdem._core import Core
+
+SETTINGS = {"set_gravity", "set_damping", "set_rock_damping", "set_lumped", "keep_peaks"}
+"""What changes no arrays: said to the whole model and to the part."""
+TOGETHER = {
+    "energies", "unbalance_ratio", "renew_step", "keep_energy_scale", "release_forces",
+    "leave_adaptive", "change_mass", "step_limit", "stable_step",
+}  # fmt: skip
+"""What ranks do with their parts, all at the same time."""
+READS = {
+    "model", "fields", "absent_fields", "rebuilt", "array", "describe", "describe_rows",
+    "describe_scalars", "stress", "yielded", "broken", "fast_weakenings", "bond_places", "lift",
+}  # fmt: skip
+"""What only reads: from the whole state, put together on every rank where it is not known."""
+
+
+class SharedCore:
+    """A core whose model is shared out to ranks. All ranks call the same functions alike.
+
+    A step is done by each rank for its part. The whole state is put together on every rank when
+    something asks for it; what changes it between steps changes it there, and the parts are cut
+    out of it again. So parts move with the rock, and any number of ranks goes on from anywhere.
+
+    Arrays that it gives are read-only.
+    """
+
+    def __init__(self, whole: Core, exchange: Exchange) -> None:
+        """Share a model.
+
+        Args:
+            whole: The whole model at its state; ranks have the same. It is used from here on.
+            exchange: The ranks.
+        """
+        self.exchange = exchange
+        self._whole, self._mesh = whole, Mesh.of(whole)
+        self._whole_is_new, self._is_prepared = True, True
+        self._part: Core | None = None
+        self._slice: Slice | None = None
+        self.shared = 0
+
+    def __getattr__(self, name: str) -> Any:
+        """A function of the core, as the tables above have it."""
+        if name.startswith("_"):
+            raise AttributeError(name)
+        if name in SETTINGS:
+            return self._in_both(name)
+        if name in TOGETHER and self._part is not None:
+            return self._in_part(name)
+        if name in READS | TOGETHER:
+            return _read_only(getattr(self.whole(), name))
+        return self._in_whole(name)
+
+    def scalars(self) -> dict[str, Any]:
+        """Numbers of the state, which all ranks have."""
+        return (self._whole if self._part is None else self._part).scalars()
+
+    def seconds(self) -> tuple[float, ...]:
+        """Time that this rank has spent, by phase of a step [s]."""
+        return (self._whole if self._part is None else self._part).seconds()
+
+    def run(self, steps: int, end_time: float = 1e300, **goal: Any) -> tuple[str, int, float]:
+        """Do steps, see `Core.run`; ghosts are found anew when rock has moved."""
+        while True:
+            part = self._cut()
+            before = part.scalars()["step"]
+            self._whole_is_new = self._is_prepared = False
+            outcome, culprit, value = part.run(steps, end_time, **goal)
+            steps -= part.scalars()["step"] - before
+            if outcome != "ghosts_due":
+                break
+            self._put_together()
+            self._part = None
+        if outcome == "lost_contact":  # by exposed face
+            exposed = self.whole().fields()["search.exposed_face"]
+            culprit = int(np.searchsorted(exposed, culprit))
+        return outcome, culprit, value
+
+    def whole(self) -> Core:
+        """The whole model at its present state, on every rank."""
+        if not self._whole_is_new:
+            self._put_together()
+        if not self._is_prepared:
+            self._whole.prepare()
+            self._is_prepared = True
+        return self._whole
+
+    def _in_both(self, name: str) -> Callable[..., Any]:
+        def say(*arguments: Any, **named: Any) -> None:
+            for core in (self._whole, self._part):
+                if core is not None:
+                    getattr(core, name)(*arguments, **named)
+
+        return say
+
+    def _in_part(self, name: str) -> Callable[..., Any]:
+        act = getattr(self._part, name)
+        if name in {"energies", "unbalance_ratio", "step_limit", "stable_step"}:
+            return act
+
+        def change(*arguments: Any, **named: Any) -> Any:
+            self._whole_is_new = self._is_prepared = False
+            return act(*arguments, **named)
+
+        return change
+
+    def _in_whole(self, name: str) -> Callable[..., Any]:
+        act = getattr(self.whole(), name)
+
+        def change(*arguments: Any, **named: Any) -> Any:
+            self._part = None
+            return act(*arguments, **named)
+
+        return change
+
+    def _put_together(self) -> None:
+        """Make the whole state from the rows that each rank owns."""
+        assert self._part is not None and self._slice is not None
+        before = self._part.array("edge.old_first")[0]
+        own = packed(own_rows(self._slice, self._part.fields(), before))
+        ranks = [unpacked(theirs) for theirs in self.exchange.gather_rows(own)]
+        self._whole.restore_anew(put_together(self._whole, ranks), self._part.scalars())
+        self._whole_is_new, self._is_prepared = True, False
+
+    def _cut(self) -> Core:
+        """The part of this rank, cut out of the whole where that has changed."""
+        if self._part is None:
+            parts = divide(self._whole, self._mesh, self.exchange.count)
+            fences = Fences.around(self._whole, self._mesh)
+            elements = needed(self._whole, self._mesh, parts, fences, self.exchange.rank)
+            own = Slice(self._whole, elements, parts.of_element, parts.of_node, self.exchange.rank)
+            self._slice, self._part = own, self._part_of(own, parts, fences)
+            self.shared += 1
+        return self._part
+
+    def _part_of(self, own: Slice, parts: Parts, fences: Fences) -> Core:
+        whole, core = self._whole, native.Core()
+        core.take_counts(own.counts())
+        core.take_settings(whole)
+        core.take_model(own.model())
+        core.take_share(self.exchange, self._share_of(own, parts, fences))
+        motion = whole.fields()["node.motion"].reshape(-1, 8)[own.keep["nodes"], :3]
+        core.start(np.ascontiguousarray(motion).ravel())
+        core.restore(own.state(), whole.scalars())
+        core.prepare()
+        return core
+
+    def _share_of(self, own: Slice, parts: Parts, fences: Fences) -> dict[str, Any]:
+        """What a rank knows of its part, as `Core.take_share` has it."""
+        model, nodes, faces = self._whole.model(), own.keep["nodes"], own.keep["faces"]
+        block = model["node.block"]
+        cut = _cut_blocks(block, parts.of_node)
+        number = np.full(len(cut), -1, np.int32)
+        number[cut] = np.arange(cut.sum())
+        return {
+            "own": {kind: _padded(flags) for kind, flags in own.own.items()},
+            "tiles": _tiles(self._whole, own),
+            "node": nodes.astype(np.int32), "face": faces.astype(np.int32),
+            "block": block[nodes], "cut_block": number[block[nodes]], "cut_blocks": int(cut.sum()),
+            "fence": fences.of_nodes[nodes].ravel(),
+            **self._link(nodes, parts.of_node),
+        }  # fmt: skip
+
+    def _link(self, nodes: NDArray[np.int64], owner: NDArray[np.int64]) -> dict[str, Any]:
+        """Agree with the other ranks on the nodes whose motion is sent."""
+        rank, count = self.exchange.rank, self.exchange.count
+        local = np.full(len(owner), -1, np.int32)
+        local[nodes] = np.arange(len(nodes))
+        wanted = [nodes[owner[nodes] == other] if other != rank else nodes[:0]
+                  for other in range(count)]  # fmt: skip
+        lengths = np.array([len(those) for those in wanted])
+        all_lengths = np.array(self.exchange.gather_rows(lengths)).reshape(count, count)
+        asked = self.exchange.gather_rows(np.concatenate(wanted))
+        send, receive, neighbours = [], [], []
+        for other in range(count):
+            first = all_lengths[other, :rank].sum()
+            of_other = asked[other][first : first + all_lengths[other, rank]]
+            sent, received = sum(map(len, send)), sum(map(len, receive))
+            send.append(local[of_other])
+            receive.append(local[wanted[other]])
+            if len(of_other) or len(wanted[other]):
+                neighbours.append(Neighbour(
+                    other, slice(sent, sent + len(of_other)),
+                    slice(received, received + len(wanted[other])),
+                ))  # fmt: skip
+        self.exchange.link(neighbours)
+        return {"send": np.concatenate(send), "receive": np.concatenate(receive)}
+
+
+def _cut_blocks(block: NDArray[np.int32], owner: NDArray[np.int64]) -> NDArray[np.bool_]:
+    """Blocks whose nodes several ranks own."""
+    count = int(block.max(initial=-1)) + 1
+    least, most = np.full(count, owner.max(initial=0)), np.zeros(count, np.int64)
+    np.minimum.at(least, block, owner)
+    np.maximum.at(most, block, owner)
+    cut: NDArray[np.bool_] = least < most
+    return cut
+
+
+def _padded(flags: NDArray[np.bool_]) -> NDArray[np.int8]:
+    """Flags of rows, as long as columns of the core."""
+    padded = np.zeros(native.padded_stride(len(flags)), np.int8)
+    padded[: len(flags)] = flags
+    return padded
+
+
+def _tiles(whole: Core, own: Slice) -> dict[str, NDArray[np.int32]]:
+    """Tile of the whole model of each eight elements, by shape."""
+    tiles, rebuilt = {}, whole.rebuilt()
+    for kind, rows in own.keep.items():
+        if f"{kind}.tile.blocks" in rebuilt:
+            first = rebuilt[f"{kind}.tile.blocks"]
+            blocks = rows[::8] // 8
+            tiles[kind] = (np.searchsorted(first, blocks, side="right") - 1).astype(np.int32)
+    return tiles
+
+
+def _read_only(found: Any) -> Any:
+    """A function of the core whose arrays nobody changes: they would be lost."""
+
+    def read(*arguments: Any, **named: Any) -> Any:
+        result = found(*arguments, **named)
+        for array in _arrays_in(result):
+            array.flags.writeable = False
+        return result
+
+    return read
+
+
+def _arrays_in(result: Any) -> list[NDArray[Any]]:
+    if isinstance(result, np.ndarray):
+        return [result]
+    if isinstance(result, Mapping):
+        return [array for array in result.values() if isinstance(array, np.ndarray)]
+    if isinstance(result, tuple):
+        return [array for array in result if isinstance(array, np.ndarray)]
+    return []
