@@ -412,6 +412,8 @@ void bind_diagnostics(nb::class_<Core>& core) {
           },
           "Interface, ratio and place of contacts whose friction falls with the speed.")
       .def("unbalance_ratio", [](const Core& c) { return unbalance_ratio(c.model, c.state); })
+      .def("rigid_velocities",
+           [](const Core& c) { return array_of(fetch(rigid_velocities(c.model, c.state))); })
       .def(
           "lift", [](const Core& c) { return c.model.rules.lifted; },
           "Gap up to which contacts that have dilated are kept, at most [m].")

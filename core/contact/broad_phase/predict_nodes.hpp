@@ -76,6 +76,17 @@ struct RigidMotion {
   }
 };
 
+/// Write it for every node.
+struct RigidVelocities {
+  RigidMotion rigid;
+  Real* velocity;  // rows of 3
+  CDEM_HD void operator()(One node) const {
+    const Vec3<Real> v = rigid.at(node.i);
+    Real* to = velocity + 3 * std::size_t(node.i);
+    to[0] = v.x, to[1] = v.y, to[2] = v.z;
+  }
+};
+
 /// Path of a node, and its skin: the deviation that the change of velocity since the last rebuild
 /// would make once more, and some of its vibration.
 struct PredictNodes {

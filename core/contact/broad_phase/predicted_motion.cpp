@@ -95,6 +95,13 @@ void take_paths(const Model& m, State& s) {
 
 }  // namespace
 
+Column<Real> rigid_velocities(const Model& m, const State& s) {
+  Column<Real> velocity;
+  velocity.renew(3 * std::size_t(m.node_count));
+  for_each_item({}, m.node_count, RigidVelocities{rigid_motion(m, s), velocity.data()});
+  return velocity;
+}
+
 bool leaves_fence(const Model& m, const State& s) {
   const LeavesFence leaves{.rigid = rigid_motion(m, s),
                            .own = s.share.counted("nodes").own,

@@ -156,7 +156,8 @@ class Fences:
     def around(cls, core: Core, mesh: Mesh, room: float = ROOM) -> Fences:
         """Fences around elements where they are now, and where they go."""
         motion, arrays = rows_of(core, "node.motion"), core.model()
-        then = motion.position + SWEPT_STEPS * core.scalars()["dt"] * motion.velocity
+        ahead = SWEPT_STEPS * core.scalars()["dt"]
+        then = motion.position + ahead * core.rigid_velocities().reshape(-1, 3)
         size = _lengths(arrays["face.length"], arrays["face.nodes"], len(then))
         deep = size * (native.widest_skin + REACH) + core.lift()
         low = np.minimum(motion.position, then) - room * size[:, None]

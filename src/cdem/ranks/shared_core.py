@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from cdem._native import core as native
 from cdem.ranks.buffers import packed, unpacked
 from cdem.ranks.exchange import Exchange, Neighbour
+from cdem.ranks.kinds import PAIRS
 from cdem.ranks.merge import own_rows, put_together
 from cdem.ranks.parts import Fences, Mesh, Parts, divide, needed
 from cdem.ranks.slices import Slice
@@ -25,11 +26,29 @@ TOGETHER = {
     "leave_adaptive", "change_mass", "step_limit", "stable_step",
 }  # fmt: skip
 """What ranks do with their parts, all at the same time."""
-READS = {
-    "model", "fields", "absent_fields", "rebuilt", "array", "describe", "describe_rows",
-    "describe_scalars", "stress", "yielded", "broken", "fast_weakenings", "bond_places", "lift",
-}  # fmt: skip
+OF_MODEL = {"model", "absent_fields", "describe", "describe_scalars", "lift"}
+"""What reads the model alone, which every rank has."""
+READS = {"rebuilt", "describe_rows", "stress", "yielded", "fast_weakenings", "bond_places"}
 """What only reads: from the whole state, put together on every rank where it is not known."""
+
+
+class Fields(Mapping[str, NDArray[Any]]):
+    """The stored arrays of a shared core by name: the whole state is put together for them."""
+
+    def __init__(self, core: SharedCore) -> None:
+        self._core = core
+        self._names = [i["name"] for i in core.describe() if i["origin"] == "stored"]
+
+    def __getitem__(self, name: str) -> NDArray[Any]:
+        if name not in self._names:
+            raise KeyError(name)
+        return self._core.array(name)[0]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._names)
+
+    def __len__(self) -> int:
+        return len(self._names)
 
 
 class SharedCore:
@@ -64,9 +83,39 @@ class SharedCore:
             return self._in_both(name)
         if name in TOGETHER and self._part is not None:
             return self._in_part(name)
+        if name in OF_MODEL:
+            return _read_only(getattr(self._whole, name))
         if name in READS | TOGETHER:
             return _read_only(getattr(self.whole(), name))
         return self._in_whole(name)
+
+    def broken(self) -> tuple[int, int]:
+        """Bond points broken so far, in tension and in shear."""
+        if self._part is None or self._whole_is_new:
+            return self._whole.broken()
+        assert self._slice is not None
+        sums = np.zeros(2, np.int64)
+        for kind in PAIRS:
+            own = self._slice.own[kind]
+            for number, name in enumerate(("tension", "shear")):
+                points = self._part.array(f"{kind}.broken_{name}")[0]
+                sums[number] += int(points[: len(own)][own].sum())
+        self.exchange.add_up(sums)
+        return int(sums[0]), int(sums[1])
+
+    def fields(self) -> Mapping[str, NDArray[Any]]:
+        """Stored arrays by name."""
+        return Fields(self)
+
+    def array(self, name: str) -> tuple[NDArray[Any], dict[str, Any]]:
+        """An array and its description, see `Core.array`; of a part where it is empty."""
+        if self._part is not None and not self._whole_is_new:
+            array, info = self._part.array(name)
+            if info["origin"] == "given":
+                return _frozen(self._whole.array(name))
+            if not len(array) and info["optional"]:
+                return array, info
+        return _frozen(self.whole().array(name))
 
     def scalars(self) -> dict[str, Any]:
         """Numbers of the state, which all ranks have."""
@@ -242,6 +291,11 @@ def _read_only(found: Any) -> Any:
         return result
 
     return read
+
+
+def _frozen(found: tuple[NDArray[Any], dict[str, Any]]) -> tuple[NDArray[Any], dict[str, Any]]:
+    found[0].flags.writeable = False
+    return found
 
 
 def _arrays_in(result: Any) -> list[NDArray[Any]]:

@@ -70,6 +70,17 @@ def _exists(folder: Path) -> CdemError:
     )
 
 
+def read_one(path: Path) -> tuple[Path, dict[str, NDArray], Attributes]:
+    """A checkpoint: its path, arrays and attributes.
+
+    Raises:
+        DamagedError: It has changed since it was written.
+        ValidationError: Its attributes are not those of this cdem.
+    """
+    arrays, text = read_checkpoint(path)
+    return path, arrays, Attributes.model_validate_json(text)
+
+
 class Results:
     """Writes the result folder of one simulation.
 
@@ -263,8 +274,7 @@ class Results:
         for name in (CHECKPOINT, CHECKPOINT_BEFORE):
             path = self.folder / name
             try:
-                arrays, text = read_checkpoint(path)
-                attributes = Attributes.model_validate_json(text)
+                found = read_one(path)
             except DamagedError as error:
                 said.append(str(error))
                 continue
@@ -277,7 +287,7 @@ class Results:
                 continue
             self.notes += [f"{why}; continuing from the previous one, {path}" for why in said]
             self._checkpoint = self._stat()
-            return path, arrays, attributes
+            return found
         raise CdemError(f"{'; '.join(said)}; run the case again with --overwrite")
 
     def _stat(self) -> os.stat_result | None:

@@ -34,7 +34,9 @@ from cdem.run.stage_state import StageState
 from cdem.run.state import Attributes, RunState, Setting
 
 if TYPE_CHECKING:
+    from cdem.ranks.exchange import Exchange
     from cdem.run.result_folder import Results
+    from cdem.run.shared_results import SharedResults
 
 CHUNK_SECONDS = 0.25
 """The loop returns about this often to check for signals and report progress [s of wall time]."""
@@ -53,6 +55,8 @@ class Simulation(RunState):
         resume: Continue from the checkpoint in the result folder.
         force: Continue although the case has changed in a way that is normally refused.
         strict: Treat warnings of `cdem check` as errors, before anything is written.
+        exchange: How this rank talks with the others that share the model; None for one alone.
+            All ranks make the same simulation and call the same functions.
 
     Raises:
         CaseError: The case or its files are wrong, or differ from the run to resume, or
@@ -86,6 +90,7 @@ class Simulation(RunState):
         resume: bool = False,
         force: bool = False,
         strict: bool = False,
+        exchange: Exchange | None = None,
     ) -> None:
         if isinstance(case, dict):
             case = Case.from_dict(case)
@@ -93,18 +98,13 @@ class Simulation(RunState):
         threads = threads or os.cpu_count() or 1
         native.set_threads(threads)
         threads = native.max_threads()  # one, if the core has no OpenMP
-        self.results: Results | None = None
+        self.results: Results | SharedResults | None = None
+        self._exchange = exchange if exchange is not None and exchange.count > 1 else None
         self._fast_weakening: dict[str, FastWeakening] = {}
         self._no_rest: NoRest | None = None
         self._actions: list[Action] = []
         if output is not None:
-            from cdem.run.result_folder import (
-                Results,
-            )  # needs HDF5 and locks; cdem check needs neither
-
-            self.results = Results(
-                Path(output), case.path_of("."), overwrite=overwrite, resume=resume
-            )
+            self.results = self._open(Path(output), case, overwrite=overwrite, resume=resume)
         try:
             digests: dict[str, str] = {}
             if self.results and resume:
@@ -130,6 +130,10 @@ class Simulation(RunState):
             self.core.prepare()
             self._hold_back()
             self.overlap = adopt_overlaps(self.build)
+        if self._exchange:
+            from cdem.ranks.shared_core import SharedCore
+
+            self.core = self.build.core = SharedCore(self.core, self._exchange)
         self.audit = Audit(self.build, self.overlap, self.threads)
         if strict:
             self.audit.refuse_warnings()
@@ -137,6 +141,16 @@ class Simulation(RunState):
             self.inputs = self.given_case.digests()
         if self.results and not resume:
             self.results.open(self)
+
+    def _open(
+        self, folder: Path, case: Case, *, overwrite: bool, resume: bool
+    ) -> Results | SharedResults:
+        """The result folder; needs HDF5 and locks, `cdem check` needs neither."""
+        from cdem.run.result_folder import Results
+        from cdem.run.shared_results import SharedResults
+
+        make = partial(Results, folder, case.path_of("."), overwrite=overwrite, resume=resume)
+        return SharedResults(self._exchange, folder, make) if self._exchange else make()
 
     def _hold_back(self) -> None:
         """Take groups that a later stage adds out of the core."""
@@ -307,7 +321,7 @@ class Simulation(RunState):
         stage = self.stage or self._begin_stage()
         speed, began, note = 0.0, time.perf_counter(), ""
         while True:
-            steps = max(CHECK_INTERVAL, int(speed * CHUNK_SECONDS))
+            steps = self._agreed(max(CHECK_INTERVAL, int(speed * CHUNK_SECONDS)))
             before, clock = self.step_count, time.perf_counter()
             outcome = self.advance(stage, steps, min([until, *(a.due for a in self._actions)]))
             now = time.perf_counter()
@@ -320,23 +334,31 @@ class Simulation(RunState):
                 note,
                 stage.note(self.step_count - stage.start_step, self.core.unbalance_ratio()),
             )
-            if progress:
-                progress(shown.progress(self, stage, speed, note))
+            if self._agreed(progress is not None):
+                now_shown = shown.progress(self, stage, speed, note)
+                if progress:
+                    progress(now_shown)
             if note and not known and self.results:
                 self.results.log(f"{stage.name}: {note}")
             if status is not None:
                 self._end_stage(stage, status)
                 return status
-            if should_stop and should_stop():
+            if self._agreed(bool(should_stop and should_stop())):
                 self.checkpoint()
                 if self.results:
                     self.results.show_stop(self)
                 return "stopped"
             if self.time >= until:
                 return "running"
-            if self.results and now - began > self.case.output.checkpoint_every:
+            if self.results and self._agreed(now - began > self.case.output.checkpoint_every):
                 began = now
                 self.checkpoint()
+
+    def _agreed(self, number: int) -> int:
+        """The number that the first rank has: time and signals are not the same on all."""
+        if self._exchange is None:
+            return number
+        return int(self._exchange.share(np.array([number]))[0])
 
     def _look(self, stage: StageState, outcome: str) -> str | None:
         """Do all tasks that are due: follow, act, record, check; returns the stage's end, or None."""
@@ -476,7 +498,10 @@ class Simulation(RunState):
         if self.results:
             self.results.checkpoint(self)
             if self.flow:
-                self.flow.write(self.results.folder, self.time)
+                from cdem.ranks.first import on_first
+
+                write = partial(self.flow.write, self.results.folder, self.time)
+                on_first(self._exchange, write) if self._exchange else write()
 
     @property
     def kept(self) -> dict[str, NDArray[np.float64]]:
