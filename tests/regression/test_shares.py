@@ -38,6 +38,7 @@ def test_slices_make_the_whole_again_and_run(name):
         whole = merge(sim.core, slices, [kept.state() for kept in slices])
         assert differences(whole, sim.core.fields()) == []
         for kept in slices:
+            assert kept.lost() == {}
             core = core_of(sim, kept)
             assert wrong_array(core) == ""
             assert differences(core.model(), kept.model()) == []
@@ -53,5 +54,5 @@ def test_ranks_make_a_step_and_new_pair_lists_as_one(name):
     for core in [sim.core, *cores]:
         assert core.run(1)[0] == "steps_done"
     states = [core.fields() for core in cores]
-    befores = [core.rebuilt()["edge.old_first"] for core in cores]
-    assert differences(merge(sim.core, slices, states, befores), sim.core.fields()) == []
+    old_firsts = [core.rebuilt()["edge.old_first"] for core in cores]
+    assert differences(merge(sim.core, slices, states, old_firsts), sim.core.fields()) == []

@@ -38,7 +38,7 @@ def centers_of(core):
 
 
 def parts_of(core, parts, seed):
-    """A part for every element, by halving along random axes, and for every node: its first's."""
+    """A part for every element, by halving along random axes, and for every node."""
     random = np.random.default_rng(seed)
     center = centers_of(core)
     part = np.zeros(len(center), np.int32)
@@ -54,10 +54,15 @@ def parts_of(core, parts, seed):
         halve(order[at:], middle, last)
 
     halve(np.arange(len(center)), 0, parts)
+    return part, node_parts(core, part)
+
+
+def node_parts(core, element_part):
+    """A part for every node: that of its first element."""
     elements, nodes = corners_of(core)
-    lowest = np.full(counts_of(core)["nodes"], len(center))
+    lowest = np.full(counts_of(core)["nodes"], len(element_part))
     np.minimum.at(lowest, nodes, elements)
-    return part, part[lowest]
+    return element_part[lowest]
 
 
 def shared_things(core):
@@ -115,9 +120,7 @@ def slices_of(core, parts, seed, layers=2):
     """The slices of all ranks."""
     element_part, node_part = parts_of(core, parts, seed)
     return [
-        Slice(
-            core, with_ghosts(core, element_part == rank, layers), element_part, node_part, rank
-        )
+        Slice(core, with_ghosts(core, element_part == rank, layers), element_part, node_part, rank)
         for rank in range(parts)
     ]
 
