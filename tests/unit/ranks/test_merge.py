@@ -12,10 +12,14 @@ from cdem.ranks.merge import merge, own_rows, put_together
 from cdem.ranks.slices import Slice
 
 WEAK = {"friction_angle": 20, "cohesion": 1e4, "tensile_strength": 1e4}
+LAWS = {
+    "brittle": {},
+    "softening": {"law": "softening", "fracture_energy_1": 1, "fracture_energy_2": 2},
+    "residual": {"law": "residual", "residual_friction_angle": 10, "residual_cohesion": 1e3},
+}
 
 
-@pytest.fixture
-def sim():
+def fall(**law):
     """Bonded tets hit a bed of cubes: they touch by vertices and edges, and some bonds break."""
     bar = {"size": [16, 1, 1], "divisions": [16, 1, 1], "shape": "tet4"}
     bed = {"size": [17, 2, 1], "divisions": [17, 1, 1]}
@@ -26,7 +30,7 @@ def sim():
             {"group": "bed", "box": bed, "translate": [-0.5, -1, -1]},
         ],
         {"bar": {"velocity": [0.3, 0.2, -3]}, "bed": {"fix": ["x", "y", "z"]}},
-        interfaces={"default": WEAK}, model={"split": {"bar": "elements", "bed": "elements"}},
+        interfaces={"default": WEAK | law}, model={"split": {"bar": "elements", "bed": "elements"}},
         rock={"young_modulus": "0.1 GPa"},
     )  # fmt: skip
     sim.step(150)
@@ -34,7 +38,19 @@ def sim():
     return sim
 
 
-def test_ranks_make_the_whole_again_after_steps(sim):
+@pytest.fixture
+def sim():
+    """The same with the simplest law."""
+    return fall()
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_ranks_make_the_whole_again_after_steps(law):
+    """Laws with states have histories, and those that ask for areas have lists of acting faces."""
+    sim = fall(**LAWS[law])
+    state = sim.core.fields()
+    assert (len(state["spring.history"]) > 0) == (law == "softening")
+    assert (len(state["outer.faces_acting_on"]) > 0) == (law == "residual")
     rules = {"rebuild_interval": 1, "step_given": sim.core.scalars()["dt"]}
     slices = slices_of(sim.core, 3, seed=1)
     whole = merge(sim.core, slices, [kept.state() for kept in slices])
