@@ -5,7 +5,15 @@ import pickle
 import numpy as np
 import pytest
 from scenes import simulate
-from shared.shares import core_of, counts_of, differences, node_parts, set_rules, slices_of
+from shared.shares import (
+    core_of,
+    counts_of,
+    differences,
+    node_parts,
+    parts_of,
+    set_rules,
+    slices_of,
+)
 
 from cdem.errors import CdemError
 from cdem.ranks.merge import merge, own_rows, put_together
@@ -135,7 +143,41 @@ def test_a_place_before_of_a_released_bond_stays_behind_all_others(sim):
         states.append(state)
     whole = merge(sim.core, slices, states, old_firsts)["edge.contact"].reshape(-1, 4)
     assert (whole[:, 3] == np.arange(counts["edge_contacts"])).all()
-    for state in states:
-        state["edge.contact"].reshape(-1, 4)[:, 3] += len(state["edge.contact"]) // 4
+    expected = np.zeros(len(whole))
+    for kept, state in zip(slices, states, strict=True):
+        own, count = kept.own["edge_contacts"], len(kept.own["edge_contacts"])
+        state["edge.contact"].reshape(-1, 4)[:, 3] += count
+        expected[kept.keep["edge_contacts"][own]] = len(whole) + np.flatnonzero(own)
     whole = merge(sim.core, slices, states, old_firsts)["edge.contact"].reshape(-1, 4)
-    assert (whole[:, 3] >= counts["edge_contacts"]).all()
+    assert (whole[:, 3] == expected).all() and len(set(expected)) > 3
+
+
+def test_labels_of_points_are_whole_though_a_rank_keeps_not_all_their_nodes():
+    """Ghosts share a bond with own tets, which do not keep all tets around a point."""
+    bar = {"size": [6, 2, 2], "divisions": [6, 2, 2], "shape": "tet4"}
+    tough = {"friction_angle": 20, "cohesion": 1e9, "tensile_strength": 1e9}
+    sim = simulate(
+        [{"group": "bar", "box": bar}], {"bar": {"velocity": [1, 0, 0]}},
+        interfaces={"default": tough}, model={"split": {"bar": "elements"}},
+    )  # fmt: skip
+    sim.step(2)
+    model, label = sim.core.model(), sim.core.fields()["node.bonded_node"]
+    sides = model["face.element"][model["triangles.faces"].reshape(-1, 2)]
+    part, nodes = parts_of(sim.core, 3, seed=1)
+    slices = []
+    for rank in range(3):
+        at_own = sides[(part[sides] == rank).any(axis=1)].ravel()
+        present = np.unique(np.concatenate([np.flatnonzero(part == rank), at_own]))
+        slices.append(Slice(sim.core, present, part, nodes, rank))
+    without = 0
+    for kept in slices:
+        own = kept.keep["nodes"][kept.own["nodes"]]
+        lacking = own[kept.local["nodes"][label[own]] < 0]
+        lengths = np.diff(kept.state()["search.edge_star_first"])
+        local = kept.state()["node.bonded_node"]
+        without += (lengths[local[kept.local["nodes"][lacking]]] > 0).sum()
+    assert without > 0
+    whole = merge(sim.core, slices, [kept.state() for kept in slices])
+    assert not {"node.bonded_node", "node.body"} & set(differences(whole, sim.core.fields()))
+    is_label = label == np.arange(len(label))
+    assert not np.diff(whole["search.edge_star_first"])[~is_label].any()

@@ -117,6 +117,17 @@ def test_blocks_are_counted_as_far_as_they_are_kept(sim):
     assert not len(bed.state()["outer.edge_first"]) and len(bed.state()["outer.vf_pairs"]) == 16
 
 
+def test_nodes_of_a_block_that_is_cut_are_counted():
+    box = {"size": [20, 1, 1], "divisions": [20, 1, 1]}
+    sim = simulate([{"group": "bar", "box": box}], {"bar": {"fix": []}})
+    parts = np.zeros(20, int), np.zeros(84, int)
+    model = Slice(sim.core, np.array([19]), *parts, 0).model()
+    assert (
+        model["node.block_count"].tolist() == [20] * 20
+    )  # 4 elements fill the last block of eight
+    assert model["node.block_first"].tolist() == [0] * 20
+
+
 def test_a_pair_needs_both_faces_and_has_its_corner_rows(sim, slices):
     faces = sim.core.model()["triangles.faces"].reshape(-1, 2)
     for kept in slices:
