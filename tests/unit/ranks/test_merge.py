@@ -132,7 +132,7 @@ def test_labels_join_what_any_rank_has_joined(sim):
 
 
 def test_a_place_before_of_a_released_bond_stays_behind_all_others(sim):
-    slices = slices_of(sim.core, 2, seed=1)
+    slices = slices_of(sim.core, 3, seed=1, layers=1)
     counts = counts_of(sim.core)
     states, old_firsts = [], []
     for kept in slices:
