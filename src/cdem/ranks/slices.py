@@ -372,6 +372,8 @@ class _Cut:
             if count == 0 and kind not in self.keep:
                 self._put(kind, np.zeros(0, np.int64), np.zeros(0, np.int32))
         for table in self.tables.values():
+            if not table.kind and len(table.flat) and any(table.kinds()):
+                raise LookupError(f"{table.name} refers to rows, but has none")
             kinds = {table.kind, *table.kinds()} - {NOT_KEPT, ""} if table.is_used else set()
             if missing := kinds - self.keep.keys():
                 raise LookupError(f"{table.name}: no rule for rows of kind {missing.pop()}")

@@ -155,6 +155,33 @@ def test_what_a_free_kind_refers_to_must_be_known(sim, monkeypatch):
         everything(sim)
 
 
+class Told:
+    """A core that describes an array in another way."""
+
+    def __init__(self, core, name, **other):
+        self._core, self._name, self._other = core, name, other
+
+    def __getattr__(self, name):
+        return getattr(self._core, name)
+
+    def describe(self):
+        infos = self._core.describe()
+        return [i | self._other if i["name"] == self._name else i for i in infos]
+
+
+@pytest.mark.parametrize("name, told, fault", [
+    ("node.mass", {"rows": "", "refers_to": ["nodes", "", "", ""]}, "refers to rows, but has none"),
+    ("node.mass", {"rows": "tet4/8"}, "no rule for rows of kind tet4/8"),
+    ("face.nodes", {"refers_to": ["nodes/8", "", "", ""]}, "no rule for rows of kind nodes/8"),
+    ("flush.first", {"rows": "tet4/8"}, "has rows of kind tet4/8"),
+])  # fmt: skip
+def test_an_array_that_no_rule_covers_is_told(sim, name, told, fault):
+    counts = counts_of(sim.core)
+    parts = np.zeros(counts["elements"], int), np.zeros(counts["nodes"], int)
+    with pytest.raises(LookupError, match=f"{name}:? {fault}"):
+        Slice(Told(sim.core, name, **told), np.arange(8), *parts, 0)
+
+
 def test_a_rank_may_keep_nothing(sim):
     counts = counts_of(sim.core)
     parts = np.ones(counts["elements"], int), np.ones(counts["nodes"], int)
