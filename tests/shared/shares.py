@@ -6,6 +6,7 @@ from cdem._native import core as native
 from cdem.model.curves import hand_over
 from cdem.model.options import options_of
 from cdem.ranks.slices import Slice
+from cdem.run import stages
 
 SHAPES = {"tet4": 4, "pyramid5": 5, "wedge6": 6, "hex8": 8}
 
@@ -37,7 +38,7 @@ def centers_of(core):
 
 
 def parts_of(core, parts, seed):
-    """A part for every element, by halving along random axes, and for every node: its first's."""
+    """A part for every element, by halving along random axes, and for every node."""
     random = np.random.default_rng(seed)
     center = centers_of(core)
     part = np.zeros(len(center), np.int32)
@@ -53,10 +54,15 @@ def parts_of(core, parts, seed):
         halve(order[at:], middle, last)
 
     halve(np.arange(len(center)), 0, parts)
+    return part, node_parts(core, part)
+
+
+def node_parts(core, element_part):
+    """A part for every node: that of its first element."""
     elements, nodes = corners_of(core)
-    lowest = np.full(counts_of(core)["nodes"], len(center))
+    lowest = np.full(counts_of(core)["nodes"], len(element_part))
     np.minimum.at(lowest, nodes, elements)
-    return part, part[lowest]
+    return element_part[lowest]
 
 
 def shared_things(core):
@@ -114,23 +120,41 @@ def slices_of(core, parts, seed, layers=2):
     """The slices of all ranks."""
     element_part, node_part = parts_of(core, parts, seed)
     return [
-        Slice(
-            core, with_ghosts(core, element_part == rank, layers), element_part, node_part, rank
-        )
+        Slice(core, with_ghosts(core, element_part == rank, layers), element_part, node_part, rank)
         for rank in range(parts)
     ]
 
 
-def core_of(sim, kept, state=None):
-    """A core of a slice of a simulation, as a stage has left it."""
-    build, case = sim.build, sim.build.case
+def set_rules(sim, core, **options):
+    """Give a core the rules of the last stage of a simulation."""
+    case, names = sim.build.case, sim.build.group_names
+    materials = [case.materials[case.groups[name].material] for name in names]
+    core.set_options(options_of(case, materials) | options)
+    stage = case.stages[max(sim.begun, 1) - 1]
+    core.set_damping(*stages.damping_of(stage))
+    core.set_rock_damping(*stages.rock_damping_of(stage))
+    core.set_lumped(stages.is_lumped(stage))
+
+
+def core_of(sim, kept, **options):
+    """A core of a slice of a simulation, ready to run."""
     core = native.Core()
     core.take_counts(kept.counts())
     core.take_model(kept.model())
-    hand_over(core, build.curves, {})
-    core.set_interfaces(build.assembly.interfaces)
-    materials = [case.materials[case.groups[name].material] for name in build.group_names]
-    core.set_options(options_of(case, materials))
-    core.start(np.ascontiguousarray(build.start_position[kept.keep["nodes"]]))
-    core.restore(kept.state() if state is None else state, sim.core.scalars())
+    hand_over(core, sim.build.curves, sim.begins)
+    core.set_interfaces(sim.build.assembly.interfaces)
+    set_rules(sim, core, **options)
+    core.start(np.ascontiguousarray(sim.build.start_position[kept.keep["nodes"]]))
+    core.restore(kept.state(), sim.core.scalars())
+    core.prepare()
     return core
+
+
+def differences(found, expected):
+    """Names of arrays that are not the same, byte by byte."""
+    assert list(found) == list(expected)
+    return [
+        name
+        for name, array in expected.items()
+        if found[name].dtype != array.dtype or found[name].tobytes() != array.tobytes()
+    ]

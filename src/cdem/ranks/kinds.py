@@ -62,7 +62,7 @@ class Table:
         count: Rows of its kind.
     """
 
-    info: dict[str, Any]
+    info: Mapping[str, Any]
     flat: NDArray[Any]
     count: int
 
@@ -141,6 +141,12 @@ def items_of(first: NDArray[Any], rows: Rows) -> tuple[Rows, Rows]:
 def starts_of(lengths: NDArray[Any]) -> Rows:
     """Starts of lists of these lengths, and the end."""
     return np.concatenate([np.zeros(1, np.int64), np.cumsum(lengths, dtype=np.int64)])
+
+
+def lengths_of(first: NDArray[Any]) -> Rows:
+    """Lengths of lists by their starts."""
+    starts = first.astype(np.int64)
+    return starts[1:] - starts[:-1]
 
 
 def numbers_of(rows: Rows, count: int) -> Rows:

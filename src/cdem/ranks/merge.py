@@ -25,6 +25,7 @@ from cdem.ranks.kinds import (
     counts_of,
     flat_of,
     items_of,
+    lengths_of,
     numbers_of,
     renumbered,
     starts_of,
@@ -68,7 +69,7 @@ def merge(
     core: Core,
     slices: Sequence[Slice],
     states: Sequence[Arrays],
-    befores: Sequence[NDArray[Any] | None] | None = None,
+    old_firsts: Sequence[NDArray[Any] | None] | None = None,
 ) -> dict[str, NDArray[Any]]:
     """The whole stored arrays from those of all ranks.
 
@@ -76,20 +77,21 @@ def merge(
         core: The whole model.
         slices: What each rank keeps of it.
         states: Stored arrays of each rank.
-        befores: "edge.old_first" of `Core.rebuilt` of each rank, see `own_rows`.
+        old_firsts: "edge.old_first" of `Core.rebuilt` of each rank, see `own_rows`.
     """
-    old = befores or [None] * len(slices)
+    old = old_firsts or [None] * len(slices)
     return put_together(core, [own_rows(*one) for one in zip(slices, states, old, strict=True)])
 
 
-def own_rows(kept: Slice, state: Arrays, before: NDArray[Any] | None = None) -> OwnRows:
+def own_rows(kept: Slice, state: Arrays, old_first: NDArray[Any] | None = None) -> OwnRows:
     """What a rank sends.
 
     Args:
         kept: What it keeps of the model.
         state: Its stored arrays.
-        before: "edge.old_first" of `Core.rebuilt`, after a step. Contacts of edges have their place
-            one step ago, which nothing reads between steps; without this it stays as it is.
+        old_first: "edge.old_first" of `Core.rebuilt`, after a step. It makes the places one step ago
+            of contacts of edges those of one rank. Nothing reads them between steps, so without
+            it they stay as they are.
     """
     local = _Local(kept, state)
     out = OwnRows(vertex_faces=local.vertex_faces[local.own[VERTEX_FACES]])
@@ -102,13 +104,13 @@ def own_rows(kept: Slice, state: Arrays, before: NDArray[Any] | None = None) -> 
             if kept.rank == 0:
                 out.numbers[name] = state[name].reshape(-1, 1)
         elif info["layout"] == "starts":
-            out.lengths[name] = np.diff(state[name].astype(np.int64))[local.own[kind]]
+            out.lengths[name] = lengths_of(state[name])[local.own[kind]]
         elif name in LABELS:
             out.links[name] = local.links(state[name])
         else:
             out.numbers[name] = local.numbers(Table(info, state[name], local.counts[kind]))
-    if before is not None and len(before) == len(local.own["exposed"]) + 1:
-        _place_before(local, before, out)
+    if old_first is not None and len(old_first) == len(local.own["exposed"]) + 1:
+        _place_before(local, old_first, out)
     return out
 
 
@@ -166,7 +168,7 @@ class _Local:
         """Items of lists, of the owner of the list."""
         items, first = info["refers_to"][0], self._state[info["name"]]
         if len(first):
-            self.own[items] = np.repeat(self.own[info["rows"]], np.diff(first))
+            self.own[items] = np.repeat(self.own[info["rows"]], lengths_of(first))
             self.counts[items] = len(self.own[items])
         elif items not in self.own:  # several sets may have lists of the same items
             self.own[items], self.counts[items] = np.zeros(0, bool), 0
@@ -194,16 +196,19 @@ class _Local:
         return whole
 
 
-def _place_before(local: _Local, before: NDArray[Any], out: OwnRows) -> None:
-    """Places of contacts of edges one step ago, among those of their mother; less than -1 if they
-    come from a bond that has let go in that step."""
+def _place_before(local: _Local, old_first: NDArray[Any], out: OwnRows) -> None:
+    """Places of contacts of edges one step ago, among those of their mother.
+
+    Those that come from bonds that have let go in that step follow all others: they are less than
+    -1, and get the numbers of one rank only if they are of one rank.
+    """
     own = local.own["exposed"]
-    out.lengths[BEFORE] = np.diff(before.astype(np.int64))[own]
+    out.lengths[BEFORE] = lengths_of(old_first)[own]
     if "edge.contact" not in out.numbers:
         return
-    mother = np.repeat(before[:-1][own], out.lengths["edge.first"])
+    mother = np.repeat(old_first[:-1][own], out.lengths["edge.first"])
     place = out.numbers["edge.contact"][:, 3]
-    released = place - before[-1]
+    released = place - old_first[-1]
     place[:] = np.where(place < 0, -1, np.where(released < 0, place - mother, -2 - released))
 
 

@@ -127,6 +127,34 @@ class Slice:
             arrays["outer.edge_first"] = arrays["outer.edge_first"][:0]
         return arrays
 
+    def lost(self) -> dict[str, int]:
+        """How many references of own rows to rows that are not kept there are, by name of the array.
+
+        None where the elements around the own ones suffice.
+        """
+        found = {}
+        given = tables_of(self._core, self._core.model(), "given")
+        for table in [*given, *tables_of(self._core, self._core.fields(), "stored")]:
+            if table.is_used and table.name not in LABELS and (count := self._lost(table)):
+                found[table.name] = count
+        return found
+
+    def _lost(self, table: Table) -> int:
+        """The same of one array."""
+        rows = self.keep[table.kind][self.own[table.kind]]
+        if table.is_list:
+            kept = self.lengths[table.name][self.own[table.kind]]
+            if table.name == BY_LABEL:  # others have the lists of labels that are not kept
+                kept = kept[self._core.fields()["node.bonded_node"][rows] == rows]
+            return int(np.diff(table.flat)[rows].sum() - kept.sum())
+        count = 0
+        for number, kind in enumerate(table.kinds()):
+            if kind and kind != NOT_KEPT:
+                index = table.rows()[rows, number]
+                row = np.where(index < 0, ~index, index) if table.info["opposite"] else index
+                count += int((self.local[kind][row[row >= 0]] < 0).sum())
+        return count
+
     def _of(self, table: Table) -> NDArray[Any]:
         """The kept rows of an array."""
         if not table.is_used:
@@ -344,6 +372,8 @@ class _Cut:
             if count == 0 and kind not in self.keep:
                 self._put(kind, np.zeros(0, np.int64), np.zeros(0, np.int32))
         for table in self.tables.values():
+            if not table.kind and len(table.flat) and any(table.kinds()):
+                raise LookupError(f"{table.name} refers to rows, but has none")
             kinds = {table.kind, *table.kinds()} - {NOT_KEPT, ""} if table.is_used else set()
             if missing := kinds - self.keep.keys():
                 raise LookupError(f"{table.name}: no rule for rows of kind {missing.pop()}")
