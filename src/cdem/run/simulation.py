@@ -34,6 +34,7 @@ from cdem.run.stage_state import StageState
 from cdem.run.state import Attributes, RunState, Setting
 
 if TYPE_CHECKING:
+    from cdem.ranks.exchange import Exchange
     from cdem.run.result_folder import Results
 
 CHUNK_SECONDS = 0.25
@@ -53,6 +54,7 @@ class Simulation(RunState):
         resume: Continue from the checkpoint in the result folder.
         force: Continue although the case has changed in a way that is normally refused.
         strict: Treat warnings of `cdem check` as errors, before anything is written.
+        exchange: How this rank talks with the others that share the model; None for one alone.
 
     Raises:
         CaseError: The case or its files are wrong, or differ from the run to resume, or
@@ -86,7 +88,10 @@ class Simulation(RunState):
         resume: bool = False,
         force: bool = False,
         strict: bool = False,
+        exchange: Exchange | None = None,
     ) -> None:
+        if exchange is not None and exchange.count > 1:
+            raise CdemError("a model cannot be shared out to ranks yet")
         if isinstance(case, dict):
             case = Case.from_dict(case)
         case = case if isinstance(case, Case) else Case.load(case)
