@@ -5,6 +5,8 @@ from __future__ import annotations
 import contextlib
 import os
 import sys
+import time
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Annotated
 
@@ -15,6 +17,7 @@ from cdem.case import child
 from cdem.cli.messages import Messages
 from cdem.cli.verbs import Verbs
 from cdem.errors import CdemError
+from cdem.ranks.launch import launched, launched_rank
 
 app = typer.Typer(
     name="cdem",
@@ -28,16 +31,48 @@ app = typer.Typer(
 )
 
 
+FIRST_WORDS = 2.0
+"""Without MPI the other ranks wait so long for the words of rank 0: their end may end it too [s]."""
+RANKED = ("run", "doctor")
+"""Commands that several ranks may run together."""
+
+
 def main() -> None:
     """Run the program; a user's mistake is one message on stderr, never a traceback."""
-    with contextlib.redirect_stderr(Messages(sys.stderr)):
+    with _silence() if launched_rank() else contextlib.redirect_stderr(Messages(sys.stderr)):
         _main()
+
+
+@contextlib.contextmanager
+def _silence() -> Iterator[None]:
+    """Drop all that is printed: rank 0 tells it."""
+    with (
+        open(os.devnull, "w") as nowhere,
+        contextlib.redirect_stdout(nowhere),
+        contextlib.redirect_stderr(nowhere),
+    ):
+        yield
+
+
+def _failing_together() -> contextlib.AbstractContextManager[None]:
+    """With several ranks: an error of all is told once, an error of some ends all."""
+    if launched() == 1:
+        return contextlib.nullcontext()
+    from cdem.ranks.mpi import world
+
+    try:
+        return world().failures.told()
+    except CdemError:
+        if launched_rank():
+            time.sleep(FIRST_WORDS)
+        raise
 
 
 def _main() -> None:
     try:
         _pass_over_matplotlibrc()
-        app()
+        with _failing_together():
+            app()
     except CdemError as error:
         print(error, file=sys.stderr)
         sys.exit(error.exit_code)
@@ -81,9 +116,12 @@ def _print_version(wanted: bool) -> None:
 
 @app.callback()
 def _top(
+    context: typer.Context,
     version: Annotated[
         bool,
         typer.Option("--version", callback=_print_version, is_eager=True, help="Print version."),
     ] = False,
 ) -> None:
-    pass
+    verb = context.invoked_subcommand
+    if launched() > 1 and verb not in RANKED:
+        raise CdemError(f"cdem {verb} runs on one rank")

@@ -20,7 +20,9 @@ Settings = Annotated[
     list[str] | None,
     typer.Option("--set", metavar="KEY=VALUE", help="Replace a value of the case; repeatable."),
 ]
-Threads = Annotated[int | None, typer.Option(min=1, help="Threads; default all cores.")]
+Threads = Annotated[
+    int | None, typer.Option(min=1, help="Threads; default all cores, or the share of a rank.")
+]
 AsJson = Annotated[bool, typer.Option("--json", help="Print JSON instead.")]
 
 Overwrite = Annotated[bool, typer.Option("--overwrite", help="Replace files that exist.")]

@@ -22,8 +22,10 @@ from cdem.cli.options import (
     stop_on_signal,
 )
 from cdem.errors import BackendError, CdemError, UnstableError
+from cdem.ranks.launch import launched
 
 if TYPE_CHECKING:
+    from cdem.ranks.mpi import Mpi
     from cdem.run.progress import Progress
     from cdem.run.simulation import Simulation
 
@@ -67,6 +69,7 @@ def run(
         allow_own_laws(case_file, allow_code)
         from cdem.run.progress import busy
 
+        exchange = _exchange()
         silent = quiet or (as_json and not sys.stderr.isatty())
         with busy("building the model", silent=silent):
             from cdem.case.case import Case
@@ -74,24 +77,51 @@ def run(
 
             simulation = Simulation(
                 Case.load(case_file, settings or []),
-                threads=threads,
+                threads=_threads(threads, exchange),
                 output=folder,
                 overwrite=overwrite,
                 resume=resume,
                 force=force,
                 strict=strict,
+                exchange=exchange,
             )
-        status = _run(simulation, folder, stop, quiet=quiet, as_json=as_json)
+        told = _told(folder, exchange)
+        status = _run(simulation, told, stop, quiet=quiet, as_json=as_json)
+    if told:
+        _tell_end(status, told, quiet=quiet, as_json=as_json)
+    if status == "stopped":
+        again = _resume_command(case_file, folder, settings or [], threads, allow_code)
+        print(f"stopped with a checkpoint; continue with: {again}", file=sys.stderr)
+        raise typer.Exit(STOPPED)
+
+
+def _exchange() -> Mpi | None:
+    """How the ranks talk that were started together; None for one alone."""
+    if launched() == 1:
+        return None
+    from cdem.ranks.mpi import world
+
+    return world()
+
+
+def _told(folder: Path, exchange: Mpi | None) -> Path | None:
+    """The result folder, for the rank that tells of it."""
+    return folder if exchange is None or exchange.rank == 0 else None
+
+
+def _threads(wanted: int | None, exchange: Mpi | None) -> int | None:
+    """Threads of this process; None for all cores."""
+    return wanted if wanted or exchange is None else exchange.threads()
+
+
+def _tell_end(status: str, folder: Path, *, quiet: bool, as_json: bool) -> None:
+    """Print how the run ended."""
     summary = folder / "summary.json"
     if as_json:
         print(summary.read_text().rstrip())
     elif not quiet:
         _tell_unrested(summary)
         print(f"{status}{_but_for(summary)}; results are in {folder}")
-    if status == "stopped":
-        again = _resume_command(case_file, folder, settings or [], threads, allow_code)
-        print(f"stopped with a checkpoint; continue with: {again}", file=sys.stderr)
-        raise typer.Exit(STOPPED)
 
 
 def _tell_unrested(summary: Path) -> None:
@@ -111,13 +141,14 @@ def _but_for(summary: Path) -> str:
 
 
 def _run(
-    simulation: Simulation, folder: Path, stop: list[str], *, quiet: bool, as_json: bool
+    simulation: Simulation, folder: Path | None, stop: list[str], *, quiet: bool, as_json: bool
 ) -> str:
+    """Run, and report in the folder, if any; returns how it ended."""
     from cdem.run.progress import watch
 
     tty = sys.stderr.isatty()
     silent = quiet or (as_json and not tty)
-    if not silent:
+    if folder and not silent:
         assert simulation.results is not None
         for warning in simulation.audit.warnings + simulation.results.notes:
             print(f"warning: {warning}", file=sys.stderr)
@@ -135,9 +166,10 @@ def _run(
         try:
             status = simulation.run(progress, lambda: bool(stop))
         except UnstableError:
-            write_report(folder)  # the report shows the places
+            if folder:
+                write_report(folder)  # the report shows the places
             raise
-    if not _is_reported(folder):
+    if folder and not _is_reported(folder):
         from cdem.run.progress import busy
 
         with busy("writing report.html", silent=silent):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 import time
 import traceback
@@ -9,7 +10,7 @@ import zlib
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from types import TracebackType
-from typing import Any
+from typing import Any, NoReturn
 
 import numpy as np
 
@@ -17,6 +18,8 @@ from cdem.errors import CdemError
 
 PATIENCE = 5.0
 """A rank that fails waits so long for the others to fail too [s]."""
+TELLING = 0.5
+"""What started the ranks passes on the last words within this time; some drop them at an abort [s]."""
 FAILED = 70
 """Exit status of all ranks after an error of some of them."""
 
@@ -30,16 +33,21 @@ def words_of(error: BaseException) -> str:
     return "".join(traceback.format_exception(error)).rstrip()
 
 
-def end(mpi: Any, words: str) -> None:
-    """Print words and end all ranks."""
+def tell(words: str) -> None:
+    """Print words, on any rank; ranks other than the first print nothing otherwise."""
+    with suppress(OSError, ValueError):
+        print(words, file=sys.__stderr__, flush=True)
+
+
+def end(mpi: Any, words: str) -> NoReturn:
+    """Print words and end all ranks; without an MPI this one, what started it ends the others."""
+    tell(words)
     with suppress(OSError, ValueError):
         sys.stdout.flush()
-    with suppress(OSError, ValueError):
-        stream = sys.__stderr__
-        if stream is not None:
-            stream.write(words + "\n")
-            stream.flush()
-    mpi.COMM_WORLD.Abort(FAILED)
+    time.sleep(TELLING)
+    if mpi is not None:
+        mpi.COMM_WORLD.Abort(FAILED)
+    os._exit(FAILED)  # some return from Abort
 
 
 class Failures:
@@ -64,8 +72,7 @@ class Failures:
         if kinds is None:
             end(self._mpi, f"rank {me} of {self._comm.size}: {words}")
         elif kinds.index(kinds[me]) == me > 0:  # not the error of rank 0, nor of one before
-            with suppress(OSError, ValueError):
-                print(f"rank {me} of {self._comm.size}: {words}", file=sys.__stderr__, flush=True)
+            tell(f"rank {me} of {self._comm.size}: {words}")
 
     def _kinds(self, words: str) -> list[int] | None:
         """A number for the error of each rank, or None if some have none."""
@@ -95,11 +102,11 @@ class Failures:
         """Do the same for errors that nothing catches; of those that all have, rank 0 tells."""
         before = sys.excepthook
 
-        def tell(
+        def at_the_top(
             kind: type[BaseException], error: BaseException, trace: TracebackType | None
         ) -> None:
             self.settle(error)
             if self._comm.rank == 0:
                 before(kind, error, trace)
 
-        sys.excepthook = tell
+        sys.excepthook = at_the_top

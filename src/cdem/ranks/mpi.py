@@ -6,6 +6,7 @@ Only buffers of numbers go between ranks; nothing is pickled.
 from __future__ import annotations
 
 import os
+import re
 from collections.abc import Sequence
 from functools import cache
 from typing import Any
@@ -45,6 +46,12 @@ def imported() -> Any:
     return MPI
 
 
+def first_words(library: str) -> str:
+    """Name and version of an MPI, of all that it says of itself."""
+    line = re.split(r"[,\n\0]", library.strip())[0]
+    return " ".join(line.replace("MPICH Version:", "MPICH").split())
+
+
 @cache
 def world() -> Mpi:
     """The exchange between all ranks of this launch.
@@ -54,13 +61,15 @@ def world() -> Mpi:
     """
     mpi = imported()
     if mpi.COMM_WORLD.size == 1 < launched():
-        library = mpi.Get_library_version().split(",")[0].splitlines()[0].strip("\0 ")
+        library = first_words(mpi.Get_library_version())
         raise BackendError(
-            f"{launched()} ranks were started, but mpi4py sees one: it uses another MPI "
-            f"({' '.join(library.split())}) than what started them. Use mpiexec of that MPI, or "
+            f"{launched()} ranks were started, but mpi4py sees one: it uses another MPI ({library}) "
+            "than what started them. Use mpiexec of that MPI, or "
             "build mpi4py for this one: MPICC=mpicc pip install --no-binary mpi4py mpi4py"
         )
-    return Mpi(mpi.COMM_WORLD)
+    exchange = Mpi(mpi.COMM_WORLD)
+    exchange.failures.guard_the_top()
+    return exchange
 
 
 class Mpi:
@@ -68,11 +77,16 @@ class Mpi:
 
     Args:
         communicator: Of mpi4py; ranks talk by copies of it.
+
+    Attributes:
+        library: Name and version of the MPI.
+        failures: What ends all ranks after an error.
     """
 
     def __init__(self, communicator: Any) -> None:
         self._mpi = imported()
         self._comm = communicator.Dup()
+        self.library = first_words(self._mpi.Get_library_version())
         self.rank, self.count, self.sent = communicator.rank, communicator.size, Sent()
         self.failures = Failures(self._mpi, communicator)
         self._watch = Watch(self._mpi, communicator, time_limit())
@@ -109,7 +123,7 @@ class Mpi:
                 to = [everything, (counts, firsts), row]
                 self._comm.Allgatherv([own, len(own), row], to)
                 row.Free()
-        return [rows.copy() for rows in np.split(everything, np.cumsum(counts)[:-1])]
+        return np.split(everything, np.cumsum(counts)[:-1])
 
     def share(self, array: NDArray[Any] | None) -> NDArray[Any]:
         """See `Exchange`."""

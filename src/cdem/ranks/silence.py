@@ -16,15 +16,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cdem.errors import BackendError
-from cdem.ranks.failures import FAILED, end
+from cdem.ranks.failures import end
 
 TIMEOUT = 600.0
 """Longest wait for other ranks, unless CDEM_MPI_TIMEOUT tells another [s]."""
 ANSWER_TIME = 3.0
 """A rank that works answers within this time [s]."""
 ASK, ANSWER = 1, 2
-"""Tags of messages: calls begun, number of the call in CALLS or -1 outside, seconds so far."""
+"""Tags of messages: calls begun, place of the present one in CALLS or -1, seconds in or outside it."""
 CALLS = ("add_up", "gather", "gather_rows", "share", "share_text", "link", "swap", "threads")
+
+States = dict[int, NDArray[np.int64] | None]
+"""By rank: the three numbers of a message, or None for one that does not answer."""
 
 
 def time_limit() -> float:
@@ -116,16 +119,24 @@ class Watch:
             f"others, in {CALLS[state[1]]} (call {state[0]})"
         )
         if not self._asks:
-            print(f"{waits}; this MPI cannot say for which", flush=True)
-            os._exit(FAILED)
-        if (states := self._ask()) is None or self._marks != self._seen:
-            self._since = time.monotonic()  # a lower rank tells, or the wait is over
-            return
-        end(self._mpi, f"{waits}: {silent_ones(states)} (CDEM_MPI_TIMEOUT)")
+            end(None, f"{waits}; this MPI cannot say for which (CDEM_MPI_TIMEOUT)")
+        states = self._ask()
+        if states is None or self._is_told_by_lower(states):
+            self._since = time.monotonic()
+        elif self._state()[0] == state[0] and self._state()[1] == state[1]:  # it still waits
+            end(self._mpi, f"{waits}: {silent_ones(states)} (CDEM_MPI_TIMEOUT)")
 
-    def _ask(self) -> dict[int, NDArray[np.int64] | None] | None:
+    def _is_told_by_lower(self, states: States) -> bool:
+        """Whether a lower rank has waited so long that it tells the user, or is about to."""
+        return any(
+            state is not None and state[1] >= 0 and state[2] > self._limit - 2 * ANSWER_TIME
+            for rank, state in states.items()
+            if rank < self._comm.rank
+        )
+
+    def _ask(self) -> States | None:
         """The states of all other ranks, None for one without answer; None if a lower one asks."""
-        states: dict[int, NDArray[np.int64] | None] = {}
+        states: States = {}
         own, requests = self._state(), []
         for other in range(self._comm.size):
             if other != self._comm.rank:
@@ -143,12 +154,11 @@ class Watch:
         return states
 
 
-def silent_ones(states: dict[int, NDArray[np.int64] | None]) -> str:
+def silent_ones(states: States) -> str:
     """Say which ranks keep the others waiting.
 
     Args:
-        states: Calls begun, the present one or -1, seconds in or outside of it; by rank; None for
-            one that does not answer.
+        states: Of the other ranks.
     """
     silent, waiting = [], []
     for rank, state in states.items():

