@@ -49,18 +49,20 @@ struct FindDilatation {
 
 /// After passes 1 and 2: the mean at the nodes, in the order of their tets.
 struct AverageAtNodes {
+  const Index* nodes;
   const Index *first, *tets;  // of a node
   const Real *volume, *own;   // [tet]
   Real* at_nodes;             // [node]
 
-  CDEM_HD void operator()(One node) const {
+  CDEM_HD void operator()(One item) const {
+    const Index node = nodes[item.i];
     Real sum = 0, whole = 0;
-    for (Index c = first[node.i]; c < first[node.i + 1]; ++c) {
+    for (Index c = first[node]; c < first[node + 1]; ++c) {
       const Index tet = tets[c];
       sum += volume[tet] * own[tet];
       whole += volume[tet];
     }
-    at_nodes[node.i] = whole > 0 ? sum / whole : 0;
+    at_nodes[node] = whole > 0 ? sum / whole : 0;
   }
 };
 

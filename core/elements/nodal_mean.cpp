@@ -7,7 +7,6 @@
 #include "core/elements/nodal_dilatation.hpp"
 #include "core/elements/tiles.hpp"
 #include "core/elements/views.hpp"
-#include "core/model/block_lists.hpp"
 #include "core/model/phase_timer.hpp"
 #include "core/ranks/ranks.hpp"
 
@@ -43,8 +42,9 @@ void find_dilatation(const Model& m, State& s, Queue q) {
 
 /// Nodes that another rank owns have its average.
 void average(const Model& m, State& s, Queue q, Column<Real>& at_nodes) {
-  for_each_item(q, m.node_count, blocks_of(s.nodal.node_blocks),
-                AverageAtNodes{.first = s.nodal.tet_first.data(),
+  for_each_item(q, Index(s.nodal.nodes.size()),
+                AverageAtNodes{.nodes = s.nodal.nodes.data(),
+                               .first = s.nodal.tet_first.data(),
                                .tets = s.nodal.tet.data(),
                                .volume = m.tet4.volume.data(),
                                .own = s.nodal.own.data(),
@@ -77,7 +77,7 @@ void list_tets(const ElementSet& e, const ElementTiles& tiles, NodalMeans& n) {
   n.other_blocks.assign(other_blocks);
 }
 
-/// Blocks of nodes with one of an averaged tet, and the tets of all nodes.
+/// Nodes of averaged tets, and the tets of all nodes.
 void list_nodes(const Model& m, NodalMeans& n) {
   const ElementSet& e = m.tet4;
   const auto nodes = on_host(e.nodes);
@@ -96,7 +96,10 @@ void list_nodes(const Model& m, NodalMeans& n) {
   n.tet_first.assign(first);
   visit([&](Index node, Index tet) { tets[first[node]++] = tet; });
   n.tet.assign(tets);
-  list_blocks(m.node_count, n.node_blocks, [&](Index i) { return averages[i] != 0; });
+  std::vector<Index> averaged;
+  for (Index i = 0; i < m.node_count; ++i)
+    if (averages[i]) averaged.push_back(i);
+  n.nodes.assign(averaged);
 }
 
 }  // namespace

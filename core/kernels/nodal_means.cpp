@@ -9,7 +9,7 @@
 namespace cdem {
 
 template void for_each_lane(Queue, Index, Blocks, const FindDilatation&);
-template void for_each_item(Queue, Index, Blocks, const AverageAtNodes&);
+template void for_each_item(Queue, Index, const AverageAtNodes&);
 template void for_each_lane(Queue, Index, Blocks, const FlowOfTets&);
 template void for_each_tile(Queue, Index, Blocks, const Tiles&,
                             const CorotationalForce<Tet4, FollowRotation, NodalFlow>&);

@@ -211,8 +211,9 @@ void describe_nodal_means(NodalMeans& n, Stored&& stored, Rebuilt&& rebuilt) {
   };
   of_blocks("tet4.averaged", "blocks of tiles with a tet that is averaged", "tet4", n.blocks);
   of_blocks("tet4.not_averaged", "the other ones", "tet4", n.other_blocks);
-  of_blocks("node.averaging", "blocks of nodes with one of an averaged tet", "nodes",
-            n.node_blocks);
+  rebuilt("list_nodal_means",
+          {.name = "node.averaging", .meaning = "nodes of averaged tets", .refers_to = {"nodes"}},
+          n.nodes);
   rebuilt("list_nodal_means",
           {.name = "node.tet_first",
            .meaning = "tets at a node",

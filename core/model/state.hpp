@@ -87,7 +87,7 @@ struct NodalMeans {
   Column<Real> after;        // [node] mean of changes since, after the last step
   Column<Real> own, flowed;  // [tet] made in every step
   Column<Real> trial;        // [node] the same
-  Column<Index> blocks, other_blocks, node_blocks;
+  Column<Index> blocks, other_blocks, nodes;
   Column<Index> tet_first, tet;  // tets of a node
 };
 

@@ -149,6 +149,7 @@ Report run(const Model& m, State& s, const Goal& goal) {
   begin_run(s, goal);
   const Report report = take_steps(m, s, goal);
   s.search.asked_step = s.search.decided_step = -1;  // something may move nodes before the next run
+  s.search.outer.skin_exceeded = false;              // what a resumed run does not know, either
   fit_contacts_by_target(s);
   finish({});  // Python may have views of arrays
   return report;

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from cdem._native import core as native
 from cdem.ranks.buffers import packed, unpacked
 from cdem.ranks.exchange import Exchange, Neighbour
-from cdem.ranks.kinds import PAIRS
+from cdem.ranks.kinds import PAIRS, Table
 from cdem.ranks.merge import own_rows, put_together
 from cdem.ranks.parts import Fences, Mesh, Parts, divide, needed
 from cdem.ranks.slices import Slice
@@ -21,14 +21,20 @@ if TYPE_CHECKING:
 
 SETTINGS = {"set_gravity", "set_damping", "set_rock_damping", "set_lumped", "keep_peaks"}
 """What changes no arrays: said to the whole model and to the part."""
+SCALARS = {"keep_energy_scale", "release_forces"}
+"""What changes scalars of the state alone."""
+DYNAMIC = {
+    "exposed", "slots", "predicted", "outer_edges", "outer_edge_pairs", "outer_vertex_faces",
+}  # fmt: skip
+"""Kinds whose rows have other numbers after a rebuild."""
 TOGETHER = {
-    "energies", "unbalance_ratio", "renew_step", "keep_energy_scale", "release_forces",
-    "leave_adaptive", "change_mass", "step_limit", "stable_step",
+    "energies", "unbalance_ratio", "renew_step", "leave_adaptive", "change_mass", "step_limit",
+    "stable_step", *SCALARS,
 }  # fmt: skip
 """What ranks do with their parts, all at the same time."""
 OF_MODEL = {"model", "absent_fields", "describe", "describe_scalars", "lift"}
 """What reads the model alone, which every rank has."""
-READS = {"rebuilt", "describe_rows", "stress", "yielded", "fast_weakenings", "bond_places"}
+READS = {"rebuilt", "describe_rows", "stress", "yielded", "bond_places"}
 """What only reads: from the whole state, put together on every rank where it is not known."""
 
 
@@ -73,6 +79,9 @@ class SharedCore:
         self._whole_is_new, self._is_prepared = True, True
         self._part: Core | None = None
         self._slice: Slice | None = None
+        self._known: set[str] = set()
+        self._rows: dict[str, NDArray[np.int64]] = {}
+        self._counts = {kind["name"]: kind["count"] for kind in whole.describe_rows()}
         self.shared = 0
 
     def __getattr__(self, name: str) -> Any:
@@ -103,6 +112,15 @@ class SharedCore:
         self.exchange.add_up(sums)
         return int(sums[0]), int(sums[1])
 
+    def fast_weakenings(self) -> list[Any]:
+        """See `Core.fast_weakenings`; most models have no such interface."""
+        if self._part is not None and not self._whole_is_new:
+            found = np.array([len(self._part.fast_weakenings())])
+            self.exchange.add_up(found)
+            if not found[0]:
+                return []
+        return self.whole().fast_weakenings()
+
     def fields(self) -> Mapping[str, NDArray[Any]]:
         """Stored arrays by name."""
         return Fields(self)
@@ -115,6 +133,8 @@ class SharedCore:
                 return _frozen(self._whole.array(name))
             if not len(array) and info["optional"]:
                 return array, info
+            if self._gathers(name, array, info):
+                return _frozen(self._whole.array(name))
         return _frozen(self.whole().array(name))
 
     def scalars(self) -> dict[str, Any]:
@@ -130,7 +150,7 @@ class SharedCore:
         while True:
             part = self._cut()
             before = part.scalars()["step"]
-            self._whole_is_new = self._is_prepared = False
+            self._forget_whole()
             outcome, culprit, value = part.run(steps, end_time, **goal)
             steps -= part.scalars()["step"] - before
             if outcome != "ghosts_due":
@@ -151,6 +171,23 @@ class SharedCore:
             self._is_prepared = True
         return self._whole
 
+    def _gathers(self, name: str, array: NDArray[Any], info: dict[str, Any]) -> bool:
+        """Bring one array of the whole up to date, if its rows have the numbers of the model."""
+        assert self._slice is not None
+        kind, own = info["rows"], self._slice.own.get(info["rows"])
+        if own is None or kind in DYNAMIC or info["layout"] == "starts" or any(info["refers_to"]):
+            return False
+        whole = Table(info, self._whole.array(name)[0], self._counts[kind])
+        if name in self._known or not whole.is_used:
+            return name in self._known
+        if kind not in self._rows:
+            rows = self._slice.keep[kind][own]
+            self._rows[kind] = np.concatenate(self.exchange.gather_rows(rows))
+        part = Table(info, array, len(own)).rows()[own]
+        whole.rows()[self._rows[kind]] = np.concatenate(self.exchange.gather_rows(part))
+        self._known.add(name)
+        return True
+
     def _in_both(self, name: str) -> Callable[..., Any]:
         def say(*arguments: Any, **named: Any) -> None:
             for core in (self._whole, self._part):
@@ -165,10 +202,18 @@ class SharedCore:
             return act
 
         def change(*arguments: Any, **named: Any) -> Any:
-            self._whole_is_new = self._is_prepared = False
+            if name in SCALARS:
+                result = act(*arguments, **named)
+                self._whole.restore({}, self._part.scalars())
+                return result
+            self._forget_whole()
             return act(*arguments, **named)
 
         return change
+
+    def _forget_whole(self) -> None:
+        self._whole_is_new = self._is_prepared = False
+        self._known = set()
 
     def _in_whole(self, name: str) -> Callable[..., Any]:
         act = getattr(self.whole(), name)
@@ -196,6 +241,7 @@ class SharedCore:
             elements = needed(self._whole, self._mesh, parts, fences, self.exchange.rank)
             own = Slice(self._whole, elements, parts.of_element, parts.of_node, self.exchange.rank)
             self._slice, self._part = own, self._part_of(own, parts, fences)
+            self._rows = {}
             self.shared += 1
         return self._part
 

@@ -81,6 +81,15 @@ def read_one(path: Path) -> tuple[Path, dict[str, NDArray], Attributes]:
     return path, arrays, Attributes.model_validate_json(text)
 
 
+def row_of(sim: RunState, histories: Sequence[Track]) -> list[float]:
+    """A row of histories.csv."""
+    e, broken = sim.energies, sim.broken
+    row: list[float] = [sim.time, sim.step_count]
+    row += [e[term.name] for term in terms_of(sim.case)]
+    row += [e["error"], sim.core.unbalance_ratio(), broken["tension"], broken["shear"]]
+    return row + [value for track in histories for value in track.values()]
+
+
 class Results:
     """Writes the result folder of one simulation.
 
@@ -207,13 +216,11 @@ class Results:
 
     def record(self, sim: RunState, frame: bool) -> None:
         """Write a history row and, if asked, a frame of the fields."""
+        self.write(sim, row_of(sim, self.tracks), frame)
+
+    def write(self, sim: RunState, row: list[float], frame: bool) -> None:
+        """The same with a row that is made already."""
         self._drop_stop()
-        e = sim.energies
-        broken = sim.broken
-        row = [sim.time, sim.step_count]
-        row += [e[term.name] for term in terms_of(sim.case)]
-        row += [e["error"], sim.core.unbalance_ratio(), broken["tension"], broken["shear"]]
-        row += [value for track in self.tracks for value in track.values()]
         self._history.append(row)
         if frame and self._volume is not None and self._surface is not None:
             self._record_frame(sim, self._volume, self._surface)

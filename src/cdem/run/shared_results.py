@@ -6,7 +6,8 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from cdem.ranks.first import on_first
-from cdem.run.result_folder import read_one
+from cdem.run.histories import Track, tracks
+from cdem.run.result_folder import read_one, row_of
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -35,6 +36,7 @@ class SharedResults:
         self._exchange, self.folder = exchange, folder
         self._results = on_first(exchange, make)
         self.notes: list[str] = self._results.notes if self._results else []
+        self._tracks: list[Track] = []
 
     def _do(self, act: Callable[[Results], Value], sim: RunState | None = None) -> Value | None:
         """Do something with the folder, and with the whole state where that is asked for."""
@@ -49,10 +51,12 @@ class SharedResults:
 
     def open(self, sim: RunState) -> None:
         """See `Results`."""
+        self._tracks = tracks(sim)
         self._do(lambda results: results.open(sim), sim)
 
     def reopen(self, sim: RunState, attributes: Attributes) -> None:
         """See `Results`."""
+        self._tracks = tracks(sim)
         self._do(lambda results: results.reopen(sim, attributes), sim)
 
     def hold(self) -> None:
@@ -69,8 +73,9 @@ class SharedResults:
         self._do(lambda results: results.log(text))
 
     def record(self, sim: RunState, frame: bool) -> None:
-        """See `Results`."""
-        self._do(lambda results: results.record(sim, frame), sim)
+        """See `Results`; all ranks make the row, from no more than it asks for."""
+        row = row_of(sim, self._tracks)
+        self._do(lambda results: results.write(sim, row, frame), sim if frame else None)
 
     def show_stop(self, sim: RunState) -> None:
         """See `Results`."""
