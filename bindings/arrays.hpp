@@ -258,6 +258,7 @@ inline void restore(Core& core, const Views& arrays, const Dict& scalars) {
   });
   core.state.search.inner.known = core.state.search.inner.held_known = false;  // of another state
   core.state.search.joined_faces = -1;
+  core.state.search.outer.skin_exceeded = false;
 }
 /// The same in place of whatever state the core had, as if it were new.
 inline void restore_anew(Core& core, const Views& arrays, const Dict& scalars) {

@@ -20,6 +20,13 @@ def bounds(domain: Domain) -> tuple[Floats, Floats]:
     return np.array(low), np.array(high)
 
 
+def outside(domain: Domain, middle: Floats) -> NDArray[np.bool_]:
+    """Whether the middles of blocks are outside, shape (blocks, 3) [m]."""
+    low, high = bounds(domain)
+    found: NDArray[np.bool_] = ((middle < low) | (middle > high)).any(axis=1)
+    return found
+
+
 def leaving(
     domain: Domain, middle: Floats, body: NDArray[np.int32], out: NDArray[np.bool_]
 ) -> NDArray[np.intp]:
@@ -31,9 +38,8 @@ def leaving(
         body: Label of each block's body: bonded blocks are one body.
         out: Whether each block has already been removed.
     """
-    low, high = bounds(domain)
-    outside = ((middle < low) | (middle > high)).any(axis=1)
-    return np.flatnonzero(outside & ~out & ~np.isin(body, body[~outside]))
+    gone = outside(domain, middle)
+    return np.flatnonzero(gone & ~out & ~np.isin(body, body[~gone]))
 
 
 def check_domain(case: Case, topology: Topology, names: list[str]) -> None:

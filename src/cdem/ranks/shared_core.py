@@ -27,11 +27,10 @@ DYNAMIC = {
     "exposed", "slots", "predicted", "outer_edges", "outer_edge_pairs", "outer_vertex_faces",
 }  # fmt: skip
 """Kinds whose rows have other numbers after a rebuild."""
-TOGETHER = {
-    "energies", "unbalance_ratio", "renew_step", "leave_adaptive", "change_mass", "step_limit",
-    "stable_step", *SCALARS,
-}  # fmt: skip
-"""What ranks do with their parts, all at the same time."""
+SUMS = {"energies", "unbalance_ratio", "step_limit", "stable_step"}
+"""Sums and largest values over all parts; of the whole state where that is known, by any rank."""
+TOGETHER = {"renew_step", "leave_adaptive", "change_mass", *SCALARS}
+"""Changes that ranks make in their parts, all at the same time."""
 OF_MODEL = {"model", "absent_fields", "describe", "describe_scalars", "lift"}
 """What reads the model alone, which every rank has."""
 READS = {"rebuilt", "describe_rows", "stress", "yielded", "bond_places"}
@@ -92,9 +91,11 @@ class SharedCore:
             return self._in_both(name)
         if name in TOGETHER and self._part is not None:
             return self._in_part(name)
+        if name in SUMS and self._part is not None and not self._whole_is_new:
+            return getattr(self._part, name)
         if name in OF_MODEL:
             return _read_only(getattr(self._whole, name))
-        if name in READS | TOGETHER:
+        if name in READS | SUMS:
             return _read_only(getattr(self.whole(), name))
         return self._in_whole(name)
 
@@ -198,8 +199,6 @@ class SharedCore:
 
     def _in_part(self, name: str) -> Callable[..., Any]:
         act = getattr(self._part, name)
-        if name in {"energies", "unbalance_ratio", "step_limit", "stable_step"}:
-            return act
 
         def change(*arguments: Any, **named: Any) -> Any:
             if name in SCALARS:

@@ -20,7 +20,7 @@ from cdem.case.untouched import Untouched
 from cdem.errors import CaseError
 from cdem.model.audit import Audit
 from cdem.model.build import Build, build
-from cdem.model.domain import leaving
+from cdem.model.domain import leaving, outside
 from cdem.named import Named
 from cdem.rows import rows_of
 from cdem.run.changes import differences
@@ -309,8 +309,11 @@ class RunState:
         domain, t = self.case.model.domain, self.build.topology
         if domain is None:
             return np.zeros(0, np.intp), np.zeros(0)
-        fields, body = self.fields, self.core.fields()["node.body"][t.block_first_node[:-1]]
+        fields = self.fields
         middle = middles(t.block_first_node, fields["mass"], fields["position"])
+        if not outside(domain, middle).any():
+            return np.zeros(0, np.intp), np.zeros(0)
+        body = self.core.fields()["node.body"][t.block_first_node[:-1]]
         blocks = leaving(domain, middle, body, self.out)
         if not len(blocks):
             return blocks, np.zeros(0)
