@@ -238,6 +238,8 @@ class SharedCore:
             parts = divide(self._whole, self._mesh, self.exchange.count)
             fences = Fences.around(self._whole, self._mesh)
             elements = needed(self._whole, self._mesh, parts, fences, self.exchange.rank)
+            if not len(elements):  # more ranks than blocks: a ghost, as no core can be empty
+                elements = np.zeros(1, np.int64)
             own = Slice(self._whole, elements, parts.of_element, parts.of_node, self.exchange.rank)
             self._slice, self._part = own, self._part_of(own, parts, fences)
             self._rows = {}
