@@ -415,6 +415,9 @@ void bind_diagnostics(nb::class_<Core>& core) {
       .def("rigid_velocities",
            [](const Core& c) { return array_of(fetch(rigid_velocities(c.model, c.state))); })
       .def(
+          "asks_area", [](const Core& c) { return c.model.interface_traits.ask_area; },
+          "Whether a law of the interfaces asks for areas of contacts.")
+      .def(
           "lift", [](const Core& c) { return c.model.rules.lifted; },
           "Gap up to which contacts that have dilated are kept, at most [m].")
       .def(

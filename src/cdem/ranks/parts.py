@@ -27,6 +27,30 @@ SWEPT_STEPS = 400
 REACH = 0.08
 """Distance at which the search lists faces that nothing brings nearer, in parts of L: depth of a
 new contact, indentation and tolerance."""
+DEPTH = 0.3
+"""A vertex may be so far behind the face that it touches, in parts of L; it may then be beyond the
+element, if the block goes on there."""
+FACES = {"tet4": 4, "pyramid5": 5, "wedge6": 5, "hex8": 6}
+EDGES = {
+    "tet4": [(0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)],
+    "pyramid5": [(0, 1), (1, 2), (2, 3), (3, 0), (0, 4), (1, 4), (2, 4), (3, 4)],
+    "wedge6": [(0, 1), (1, 2), (2, 0), (3, 4), (4, 5), (5, 3), (0, 3), (1, 4), (2, 5)],
+    "hex8": [
+        (0, 1),
+        (1, 2),
+        (2, 3),
+        (3, 0),
+        (4, 5),
+        (5, 6),
+        (6, 7),
+        (7, 4),
+        (0, 4),
+        (1, 5),
+        (2, 6),
+        (3, 7),
+    ],
+}
+"""Edges of an element, by its corners."""
 
 
 @dataclass
@@ -38,27 +62,41 @@ class Mesh:
         corner_node: Node of each corner.
         count: Number of elements.
         face_element: Element behind each exterior face.
+        is_alone: Whether all faces of an element are exterior ones.
+        edge_element: Element of each edge of an element.
+        edge_nodes: Ends of these edges, shape (edges, 2).
     """
 
     corner_element: Indices
     corner_node: Indices
     count: int
     face_element: Indices
+    is_alone: NDArray[np.bool_]
+    edge_element: Indices
+    edge_nodes: Indices
 
     @classmethod
     def of(cls, core: Core) -> Mesh:
         """The mesh of a core."""
-        arrays, elements, nodes, first = core.model(), [], [], 0
+        arrays, first = core.model(), 0
+        elements, nodes, faces, edge_elements, edges = [], [], [], [], []
         counts = {kind["name"]: kind["count"] for kind in core.describe_rows()}
         for shape, corners in NODES.items():
             count = counts[shape]
-            table = arrays[f"{shape}.nodes"].reshape(corners, -1)[:, :count]
-            nodes.append(table.T.ravel())
-            elements.append(np.repeat(np.arange(first, first + count), corners))
+            table = arrays[f"{shape}.nodes"].reshape(corners, -1)[:, :count].T.astype(np.int64)
+            of_shape = np.arange(first, first + count)
+            nodes.append(table.ravel())
+            elements.append(np.repeat(of_shape, corners))
+            faces.append(np.full(count, FACES[shape]))
+            edges.append(table[:, EDGES[shape]].reshape(-1, 2))
+            edge_elements.append(np.repeat(of_shape, len(EDGES[shape])))
             first += count
+        face_element = arrays["face.element"].astype(np.int64)
         return cls(
-            np.concatenate(elements), np.concatenate(nodes).astype(np.int64), first,
-            arrays["face.element"].astype(np.int64),
+            corner_element=np.concatenate(elements), corner_node=np.concatenate(nodes),
+            count=first, face_element=face_element,
+            is_alone=np.bincount(face_element, minlength=first) == np.concatenate(faces),
+            edge_element=np.concatenate(edge_elements), edge_nodes=np.concatenate(edges),
         )  # fmt: skip
 
     def lowest_element(self, nodes: int) -> Indices:
@@ -146,11 +184,11 @@ class Fences:
 
     Attributes:
         of_nodes: Of the paths of nodes without their skins, rows of 8 as in the core.
-        of_elements: Of the search for contacts around elements, rows of lowest and highest x y z.
+        searched: Of the search for contacts around nodes, rows of lowest and highest x y z.
     """
 
     of_nodes: Array
-    of_elements: Array
+    searched: Array
 
     @classmethod
     def around(cls, core: Core, mesh: Mesh, room: float = ROOM) -> Fences:
@@ -159,15 +197,28 @@ class Fences:
         ahead = SWEPT_STEPS * core.scalars()["dt"]
         then = motion.position + ahead * core.rigid_velocities().reshape(-1, 3)
         size = _lengths(arrays["face.length"], arrays["face.nodes"], len(then))
-        deep = size * (native.widest_skin + REACH) + core.lift()
         low = np.minimum(motion.position, then) - room * size[:, None]
         high = np.maximum(motion.position, then) + room * size[:, None]
+        deep = np.full(len(then), REACH)
+        deep[mesh.corner_node[~mesh.is_alone[mesh.corner_element]]] += DEPTH
+        deep = (size * (native.widest_skin + deep) + core.lift())[:, None]
         pad = np.zeros((len(then), 1))
+        return cls(np.hstack([low, pad, high, pad]), np.hstack([low - deep, high + deep]))
+
+    def of_elements(self, mesh: Mesh) -> Array:
+        """Boxes of elements in the search."""
         boxes = np.empty((mesh.count, 6))
         boxes[:, :3], boxes[:, 3:] = np.inf, -np.inf
-        np.minimum.at(boxes[:, :3], mesh.corner_element, (low - deep[:, None])[mesh.corner_node])
-        np.maximum.at(boxes[:, 3:], mesh.corner_element, (high + deep[:, None])[mesh.corner_node])
-        return cls(np.hstack([low, pad, high, pad]), boxes)
+        np.minimum.at(boxes[:, :3], mesh.corner_element, self.searched[mesh.corner_node, :3])
+        np.maximum.at(boxes[:, 3:], mesh.corner_element, self.searched[mesh.corner_node, 3:])
+        return boxes
+
+    def of_edges(self, nodes: Indices) -> Array:
+        """Boxes of edges in the search, given by their ends."""
+        one, other = self.searched[nodes[:, 0]], self.searched[nodes[:, 1]]
+        return np.hstack([
+            np.minimum(one[:, :3], other[:, :3]), np.maximum(one[:, 3:], other[:, 3:])
+        ])  # fmt: skip
 
 
 def _lengths(length: Array, nodes: NDArray[np.integer], count: int) -> Array:
@@ -180,18 +231,35 @@ def _lengths(length: Array, nodes: NDArray[np.integer], count: int) -> Array:
     return largest
 
 
-def needed(core: Core, mesh: Mesh, parts: Parts, fences: Fences, rank: int) -> Indices:
-    """Elements that a rank needs: own ones, and two layers of ghosts.
+def needed(
+    core: Core, mesh: Mesh, parts: Parts, fences: Fences, rank: int
+) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+    """Elements that a rank needs: its own and ghosts.
 
     The forces on own nodes come from elements there, from bonds, and from contacts of faces near
-    them; whom such a face touches depends on the faces near it.
+    them. Whom the vertices and edges of such a face touch there depends on the faces near these.
+
+    Returns:
+        Own elements and those that act on own nodes; all that are needed.
     """
     own = parts.of_node == rank
     found = (parts.of_element == rank) | mesh.at_nodes(own | _bolted(core, own))
-    for _ in range(2):
-        near = native.near_boxes(fences.of_elements.ravel(), found.astype(np.int8)) != 0
-        found = near | _with_partners(core, mesh, found)
-    return np.flatnonzero(found)
+    boxes = fences.of_elements(mesh)
+    acting = _near(boxes, boxes[found]) | _with_partners(core, mesh, found)
+    if core.asks_area():  # the area of a contact depends on all that touch its faces
+        return acting, _near(boxes, boxes[acting]) | acting
+    edges = fences.of_edges(mesh.edge_nodes[acting[mesh.edge_element]])
+    chosen = np.vstack([boxes[found], edges[_near(edges, boxes[found])]])
+    return acting, _near(boxes, chosen) | acting
+
+
+def _near(boxes: Array, some: Array) -> NDArray[np.bool_]:
+    """Which boxes overlap one of some."""
+    flags = np.zeros(len(boxes) + len(some), np.int8)
+    flags[len(boxes) :] = 1
+    near = native.near_boxes(np.vstack([boxes, some]).ravel(), flags)
+    found: NDArray[np.bool_] = near[: len(boxes)] != 0
+    return found
 
 
 def _bolted(core: Core, some: NDArray[np.bool_]) -> NDArray[np.bool_]:

@@ -237,19 +237,22 @@ class SharedCore:
         if self._part is None:
             parts = divide(self._whole, self._mesh, self.exchange.count)
             fences = Fences.around(self._whole, self._mesh)
-            elements = needed(self._whole, self._mesh, parts, fences, self.exchange.rank)
-            own = Slice(self._whole, elements, parts.of_element, parts.of_node, self.exchange.rank)
-            self._slice, self._part = own, self._part_of(own, parts, fences)
+            rank = self.exchange.rank
+            acting, found = needed(self._whole, self._mesh, parts, fences, rank)
+            own = Slice(self._whole, np.flatnonzero(found), parts.of_element, parts.of_node, rank)
+            far = ~acting[self._mesh.face_element[own.keep["faces"]]]
+            self._slice, self._part = own, self._part_of(own, parts, fences, far)
             self._rows = {}
             self.shared += 1
         return self._part
 
-    def _part_of(self, own: Slice, parts: Parts, fences: Fences) -> Core:
+    def _part_of(self, own: Slice, parts: Parts, fences: Fences, far: NDArray[np.bool_]) -> Core:
         whole, core = self._whole, native.Core()
         core.take_counts(own.counts())
         core.take_settings(whole)
         core.take_model(own.model())
-        core.take_share(self.exchange, self._share_of(own, parts, fences))
+        share = self._share_of(own, parts, fences) | {"far": far.astype(np.int8)}
+        core.take_share(self.exchange, share)
         motion = whole.fields()["node.motion"].reshape(-1, 8)[own.keep["nodes"], :3]
         core.start(np.ascontiguousarray(motion).ravel())
         core.restore(own.state(), whole.scalars())
