@@ -31,7 +31,7 @@ SUMS = {"energies", "unbalance_ratio", "step_limit", "stable_step"}
 """Sums and largest values over all parts; of the whole state where that is known, by any rank."""
 TOGETHER = {"renew_step", "leave_adaptive", "change_mass", *SCALARS}
 """Changes that ranks make in their parts, all at the same time."""
-OF_MODEL = {"model", "absent_fields", "describe", "describe_scalars", "lift"}
+OF_MODEL = {"model", "absent_fields", "describe", "describe_scalars", "lift", "asks_area"}
 """What reads the model alone, which every rank has."""
 READS = {"rebuilt", "describe_rows", "stress", "yielded", "bond_places"}
 """What only reads: from the whole state, put together on every rank where it is not known."""
@@ -235,8 +235,9 @@ class SharedCore:
     def _cut(self) -> Core:
         """The part of this rank, cut out of the whole where that has changed."""
         if self._part is None:
-            parts = divide(self._whole, self._mesh, self.exchange.count)
-            fences = Fences.around(self._whole, self._mesh)
+            whole = self.whole()
+            parts = divide(whole, self._mesh, self.exchange.count)
+            fences = Fences.around(whole, self._mesh)
             rank = self.exchange.rank
             acting, found = needed(self._whole, self._mesh, parts, fences, rank)
             own = Slice(self._whole, np.flatnonzero(found), parts.of_element, parts.of_node, rank)
