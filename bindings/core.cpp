@@ -412,8 +412,18 @@ void bind_diagnostics(nb::class_<Core>& core) {
           },
           "Interface, ratio and place of contacts whose friction falls with the speed.")
       .def("unbalance_ratio", [](const Core& c) { return unbalance_ratio(c.model, c.state); })
-      .def("rigid_velocities",
-           [](const Core& c) { return array_of(fetch(rigid_velocities(c.model, c.state))); })
+      .def(
+          "coming_paths",
+          [](const Core& c, Array<Real> length) {
+            Column<Real> of_nodes;
+            of_nodes.assign(length.data(), length.size());
+            return array_of(fetch(coming_paths(c.model, c.state, of_nodes)));
+          },
+          "length"_a,
+          "Velocities of the next prediction and skins at most of nodes, for faces up to these L.")
+      .def(
+          "asks_area", [](const Core& c) { return c.model.interface_traits.ask_area; },
+          "Whether a law of the interfaces asks for areas of contacts.")
       .def(
           "lift", [](const Core& c) { return c.model.rules.lifted; },
           "Gap up to which contacts that have dilated are kept, at most [m].")
@@ -480,8 +490,8 @@ NB_MODULE(CDEM_MODULE, module) {
   module.def("device_name", &device_name);
   module.def("energy_terms", &energy_term_infos,
              "Terms of the energy ledger: name, kind (stored, lost, supplied) and meaning.");
-  module.def("near_boxes", &near_boxes, "boxes"_a, "flags"_a,
-             "Flags of the boxes that overlap one with a flag; rows of lowest and highest x y z.");
+  module.def("near_boxes", &near_boxes, "boxes"_a, "reach"_a, "flags"_a,
+             "Flags of the boxes near one with a flag: no farther than twice the smaller reach.");
   module.def("solve_blocks", &solve_blocks, "system"_a, "right"_a, "part"_a, "most_iterations"_a);
   module.def("set_threads", [](int count) { omp_set_num_threads(count); }, "count"_a);
   module.def("measure_bandwidth", &measure_bandwidth, "bytes"_a,

@@ -62,6 +62,7 @@ inline void take_share(Core& core, nb::object exchange, const nb::dict& from) {
   };
   each("own", share.own);
   each("tiles", share.tiles);
+  copy(from["far"], share.far);
   copy(from["node"], share.node);
   copy(from["face"], share.face);
   copy(from["block"], share.block);
@@ -72,15 +73,19 @@ inline void take_share(Core& core, nb::object exchange, const nb::dict& from) {
   share.cut_blocks = nb::cast<Index>(from["cut_blocks"]);
 }
 
-/// Flags of the boxes that overlap one with a flag; rows of lowest and highest x y z.
-inline nb::ndarray<nb::numpy, Flag> near_boxes(Array<Real> boxes, Array<Flag> flags) {
+/// See flag_near; boxes are rows of lowest and highest x y z.
+inline nb::ndarray<nb::numpy, Flag> near_boxes(Array<Real> boxes, Array<Real> reach,
+                                               Array<Flag> flags) {
   static_assert(sizeof(Box) == 6 * sizeof(Real));
-  if (boxes.size() != 6 * flags.size()) throw nb::value_error("one flag for each box");
+  if (boxes.size() != 6 * flags.size() || reach.size() != flags.size())
+    throw nb::value_error("a flag and a reach for each box");
   Column<Box> all;
+  Column<Real> room;
   Column<Flag> near;
   all.assign(reinterpret_cast<const Box*>(boxes.data()), flags.size());
+  room.assign(reach.data(), reach.size());
   near.assign(flags.data(), flags.size());
-  flag_near(all, near);
+  flag_near(all, room, near);
   const auto found = on_host(near);
   return array_of(std::vector<Flag>(found.begin(), found.end()));
 }

@@ -11,7 +11,7 @@ template void for_each_item(Queue, Index, const LowerLengths&);
 template void select_items(Queue, Index, const IsOnExposed&, Column<Index>&);
 template void for_each_item(Queue, Index, const PlacePredicted&);
 template void for_each_item(Queue, Index, const PredictNodes&);
-template void for_each_item(Queue, Index, const RigidVelocities&);
+template void for_each_item(Queue, Index, const ListComingPaths&);
 template void for_each_item(Queue, Index, const PathsByNode&);
 template void for_each_item(Queue, Index, const TakePaths&);
 template bool any_item(Queue, Index, const LeavesFence&);

@@ -5,8 +5,10 @@
 
 namespace cdem {
 
-/// A node wakes if it does not sleep, or is or was on a pair list.
+/// A node wakes if it does not sleep, or is or was on a pair list; others move the nodes that a
+/// rank does not own.
 struct FindWakingNodes {
+  const Flag* own;  // null: all are
   const Flag* sleeps;
   const Index* contact_first;  // [node + 1]
   Flag *listed, *wakes;
@@ -14,7 +16,7 @@ struct FindWakingNodes {
     const bool was = listed[node.i];
     const bool is = contact_first[node.i] < contact_first[node.i + 1];
     listed[node.i] = is;
-    wakes[node.i] = !sleeps[node.i] || is || was;
+    wakes[node.i] = (!sleeps[node.i] || is || was) && (!own || own[node.i]);
   }
 };
 

@@ -43,14 +43,26 @@ void leave_averaged(const State& s, Column<Index>& awake) {
   awake.assign(others);
 }
 
-/// A tile sums the forces of all its elements: if one moves, the others are awake.
-void wake_tiles(const ElementTiles& tiles, std::vector<Flag>& moves) {
+/// Do elements of a tile share nodes?
+bool is_joined(const ElementTiles& tiles, OnHost<const Index> element_first, Index tile) {
+  const auto blocks = on_host(tiles.block_first), nodes = on_host(tiles.node_first);
+  const auto node = on_host(tiles.node);
+  for (Index k = nodes[blocks[tile]]; k < nodes[blocks[tile + 1]]; ++k)
+    if (element_first[node[k] + 1] - element_first[node[k]] > 1) return true;
+  return false;
+}
+
+/// A tile sums the forces of all its elements: if one moves, the others are awake, unless each has
+/// nodes of its own.
+void wake_tiles(const State& s, const ElementTiles& tiles, std::vector<Flag>& moves) {
+  const auto element_first = on_host(s.nodes.element_first);
   const auto first = on_host(tiles.block_first);
   for (std::size_t tile = 0; tile + 1 < first.size(); ++tile) {
     const Index count = Index(moves.size()), last = first[tile + 1] * block_size;
     const auto begin = moves.begin() + first[tile] * block_size;
     const auto end = moves.begin() + std::min(last, count);
-    if (std::find(begin, end, 1) != end) std::fill(begin, end, Flag(1));
+    if (std::find(begin, end, 1) != end && is_joined(tiles, element_first, Index(tile)))
+      std::fill(begin, end, Flag(1));
   }
 }
 
@@ -60,14 +72,20 @@ void find_awake(const Model& m, State& s) {
   const Transfer transfer;
   const std::vector<Flag> fixed = fixed_nodes(m, s);
   std::vector<Flag> pulled(m.node_count);
-  for_each_set(m, s, [&](auto, const auto& set, auto& state) {
+  const Flag* const own_nodes = s.share.counted("nodes").own;
+  const auto is_own = [own_nodes](Index node) { return !own_nodes || own_nodes[node]; };
+  for_each_set(m, s, [&](const auto& kind, const auto& set, auto& state) {
     const auto for_each_node = nodes_of(m, set);
     std::vector<Flag> moves(set.count);
+    const bool elements = requires { state.tiles; };
+    const Counted own = s.share.counted(kind.name);
     for (Index i = 0; i < set.count; ++i) {
-      for_each_node(i, [&](Index node) { moves[i] |= !fixed[node]; });
+      // of elements at ghosts alone nothing is asked here; bonds there break here too
+      const bool all = !elements || !own.own || own.own[i];
+      for_each_node(i, [&](Index node) { moves[i] |= !fixed[node] && (all || is_own(node)); });
       if (moves[i]) for_each_node(i, [&](Index node) { pulled[node] = 1; });
     }
-    if constexpr (requires { state.tiles; }) wake_tiles(state.tiles, moves);
+    if constexpr (requires { state.tiles; }) wake_tiles(s, state.tiles, moves);
     list_blocks(set.count, state.awake, [&](Index i) { return moves[i] != 0; });
   });
   leave_averaged(s, s.tet4.awake);
@@ -75,7 +93,7 @@ void find_awake(const Model& m, State& s) {
   const auto sleeps = on_host(s.nodes.sleeps);
   const NodePorts ports = on_host(node_ports(m, s));
   for (Index i = 0; i < m.node_count; ++i)
-    sleeps[i] = fixed[i] && !pulled[i] && !ports.is_loaded(i);
+    sleeps[i] = !is_own(i) || (fixed[i] && !pulled[i] && !ports.is_loaded(i));
   list_awake_nodes(m, s);
 }
 
@@ -85,7 +103,8 @@ void list_awake_nodes(const Model& m, State& s) {
   wakes.renew(m.node_count);
   s.nodes.listed.resize(m.node_count);
   for_each_item({}, m.node_count,
-                FindWakingNodes{.sleeps = s.nodes.sleeps.data(),
+                FindWakingNodes{.own = s.share.counted("nodes").own,
+                                .sleeps = s.nodes.sleeps.data(),
                                 .contact_first = s.search.contact_first.data(),
                                 .listed = s.nodes.listed.data(),
                                 .wakes = wakes.data()});

@@ -100,3 +100,61 @@ def test_any_deal_of_the_elements_gives_the_same(name, deal, monkeypatch):
     monkeypatch.setattr(shared_core, "divide", dealt_by(deal, seed=len(name)))
     count = 3
     assert on_ranks(count, lambda _: DEALT[name]()) == [expected(name)] * count
+
+
+# ------------------------------------------------------------------ teeth: too few ghosts are noticed
+
+
+def one_layer(needed):
+    """Elements around own nodes alone: whom their faces touch, but not those near them."""
+
+    def fewer(core, mesh, parts_, fences, rank):
+        some = (parts_.of_element == rank) | mesh.at_nodes(parts_.of_node == rank)
+        return np.flatnonzero(some)
+
+    return fewer
+
+
+@pytest.mark.parametrize("count", [2, 3])
+def test_contacts_across_parts_need_ghosts(count, monkeypatch):
+    """With those elements alone that have own nodes, parts fall through each other."""
+    monkeypatch.setattr(shared_core, "needed", one_layer(shared_core.needed))
+    assert on_ranks(count, lambda _: digest_of_results(rubble())) != [expected("rubble")] * count
+
+
+def test_ghosts_need_to_be_found_anew(monkeypatch):
+    """Fences that nothing leaves: ghosts are those of the first step."""
+    around = Fences.around
+
+    def endless(core, mesh, room=0):
+        fences = around(core, mesh, room)
+        fences.of_nodes[:, :3], fences.of_nodes[:, 4:7] = -1e9, 1e9
+        return fences
+
+    monkeypatch.setattr(Fences, "around", endless)
+    assert on_ranks(3, lambda _: digest_of_results(rubble())) != [expected("rubble")] * 3
+
+
+# ------------------------------------------------------------------ ghosts are like their owners
+
+
+def numbers_at(info, array, rows):
+    """Rows of an array."""
+    return Table(info, array, len(rows)).rows()[: len(rows)]
+
+
+class Ghosts:
+    """Compares ghosts with their owners each time the parts of a shared core are put together."""
+
+    def __init__(self):
+        self.wrong, self.looks = set(), 0
+        self.seen = Counter()
+
+    def look(self, core):
+        """Compare those of one rank."""
+        kept, part, whole = core._slice, core._part.fields(), core._whole.fields()
+        self.looks += 1
+        for info in kept.infos:
+            name = info["name"]
+            if len(part[name]) and not any(info["refers_to"]) and info["layout"] != "starts":
+                yield info, part[name], whole[name]

@@ -60,6 +60,7 @@ struct Patch {
   Index block;
   bool movable;
   bool whole;  // are all faces of the element exposed?
+  bool far;    // of a rank: is it of an element that touches no own one?
   Box box;     // of the whole motion
 
   /// Place of a node among the vertices, or how many there are.

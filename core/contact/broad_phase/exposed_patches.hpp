@@ -20,6 +20,7 @@ struct ElementSurface {
   const Index *exposed_face, *block;  // [exposed], [face]
   const Flag* movable;                // [face]
   const Real *area, *reach;           // [face]  [m2], [m]
+  const Flag* far;                    // [face] see Patch; null: none
   const Index *target, *edge_first;   // [slot], [exposed + 1]
   const Real *springs, *edges;        // rows of ContactState
 
@@ -185,6 +186,7 @@ struct MakePatches {
       p.reach = max_of(of.reach[e.face], p.reach);
       p.block = e.block;
       p.movable = e.movable;
+      p.far = of.far && of.far[e.face];
       p.box.include(e.box);
       for (Index k = 0; k < e.shape.count(); ++k) {
         add_vertex(p, i, k, of.faces.vertex(e.face, k));

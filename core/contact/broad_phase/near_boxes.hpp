@@ -6,19 +6,29 @@
 
 namespace cdem {
 
-/// Flag the boxes that overlap one of those with a flag; these keep it.
-void flag_near(const Column<Box>& boxes, Column<Flag>& flags);
+/// Flag the boxes that are near one of those with a flag: no farther from it, along each axis, than
+/// twice the smaller reach of the two  [m]. Those with a flag keep it.
+void flag_near(const Column<Box>& boxes, const Column<Real>& reach, Column<Flag>& flags);
 
-/// Does a box overlap one of a tree?
+/// Is a box near one of a tree?
 struct FlagNear {
   const Box* boxes;
-  BoxTree tree;
+  const Real* reach;
+  BoxTree tree;         // of the boxes to be near, with room for their reach
+  const Index* others;  // their numbers
   Flag* flags;
 
   CDEM_HD void operator()(One i) const {
     if (flags[i.i]) return;
+    Box box = boxes[i.i];
+    box.inflate(reach[i.i]);
     bool near = false;
-    tree.query(boxes[i.i], [&](Index) { near = true; });
+    tree.query(box, [&](Index place) {
+      const Index other = others[place];
+      Box room = boxes[i.i];
+      room.inflate(2 * min_of(reach[i.i], reach[other]));
+      near = near || room.overlaps(boxes[other]);
+    });
     flags[i.i] = near;
   }
 };

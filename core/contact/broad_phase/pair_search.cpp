@@ -26,6 +26,7 @@ ElementSurface element_surface(const Model& m, const State& s) {
           .movable = m.face_movable.data(),
           .area = m.face_area.data(),
           .reach = m.face_reach.data(),
+          .far = s.share.far.size() > 0 ? s.share.far.data() : nullptr,
           .target = s.springs.target.data(),
           .edge_first = s.edges.first.data(),
           .springs = s.springs.state.data(),

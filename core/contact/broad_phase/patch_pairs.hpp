@@ -20,7 +20,7 @@ struct ListPatchPairs {
     if (!patch.movable) return;  // movable patches find it
     tree.query(patch.box, [&](Index q) {
       const Patch& other = patches[q];
-      if ((q > one || !other.movable) && patch.block != other.block)
+      if ((q > one || !other.movable) && patch.block != other.block && !(patch.far && other.far))
         act(PatchPair{.one = one, .other = q, .edge = {}, .vertex = {}, .meets = 0, .listed = {}});
     });
   }

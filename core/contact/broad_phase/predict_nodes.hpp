@@ -76,17 +76,6 @@ struct RigidMotion {
   }
 };
 
-/// Write it for every node.
-struct RigidVelocities {
-  RigidMotion rigid;
-  Real* velocity;  // rows of 3
-  CDEM_HD void operator()(One node) const {
-    const Vec3<Real> v = rigid.at(node.i);
-    Real* to = velocity + 3 * std::size_t(node.i);
-    to[0] = v.x, to[1] = v.y, to[2] = v.z;
-  }
-};
-
 /// Path of a node, and its skin: the deviation that the change of velocity since the last rebuild
 /// would make once more, and some of its vibration.
 struct PredictNodes {
@@ -102,14 +91,15 @@ struct PredictNodes {
   CDEM_HD void operator()(One item) const {
     const Index node = predicted_nodes[item.i];
     const Vec3<Real> v = rigid.at(node), own = rigid.nodes.velocity(node);
-    const Vec3<Real> change = v - before(node, own);  // of a new one, its vibration
-    const Real deviation = lookahead_time * norm(change) + period * norm(own - v);
+    const Real deviates = deviation(node, v, before(node, own));  // of a new one, its vibration
     const Real thin = least * length[node], wide = most * length[node];
-    const Real skin = deviation < thin ? thin : wide < deviation ? wide : deviation;
+    const Real skin = deviates < thin ? thin : wide < deviates ? wide : deviates;
     PredictedNode{rigid.nodes.position(node), v, skin}.store(predicted + 8 * std::size_t(item.i));
   }
-
- private:
+  CDEM_HD Real deviation(Index node, const Vec3<Real>& v, const Vec3<Real>& before) const {
+    return lookahead_time * norm(v - before) + period * norm(rigid.nodes.velocity(node) - v);
+  }
+  /// The velocity of the last prediction, or another one where there was none.
   CDEM_HD Vec3<Real> before(Index node, const Vec3<Real>& own) const {
     const Index place = place_before ? place_before[node] : -1;
     return place < 0 ? own : PredictedNode::at(predicted_before + 8 * std::size_t(place)).velocity;
@@ -147,26 +137,51 @@ struct TakePaths {
   }
 };
 
-/// May the coming prediction lead an own node out of the box that ghosts were found for? Its skin
-/// has been taken from the box.
+/// Paths and skins that the coming prediction may give nodes, of known or of new exposed faces.
+struct ComingPaths {
+  PredictNodes predict;
+
+  /// The skin at most of a node with faces up to this L.
+  CDEM_HD Real skin(Index node, const Vec3<Real>& velocity, Real length) const {
+    const Real known = predict.deviation(node, velocity, predict.before(node, velocity));
+    const Real own = predict.deviation(node, velocity, predict.rigid.nodes.velocity(node));
+    const Real most = max_of(max_of(known, own), predict.least * length);
+    return min_of(most, predict.most * length);
+  }
+};
+
+/// Write them: velocity, skin.
+struct ListComingPaths {
+  ComingPaths paths;
+  const Real* length;  // [node] largest L of its faces  [m]
+  Real* rows;          // rows of 4
+  CDEM_HD void operator()(One node) const {
+    const Vec3<Real> v = paths.predict.rigid.at(node.i);
+    Real* to = rows + 4 * std::size_t(node.i);
+    to[0] = v.x, to[1] = v.y, to[2] = v.z, to[3] = paths.skin(node.i, v, length[node.i]);
+  }
+};
+
+/// May the coming prediction lead an own node out of the box that ghosts were found for?
 struct LeavesFence {
-  RigidMotion rigid;
+  ComingPaths paths;
   const Flag* own;
-  const Real* fence;  // rows of 8: lowest x y z, a pad, highest x y z, a pad  [m]
-  Real lookahead_time;
+  const Real* fence;  // rows of 8: lowest x y z, L, highest x y z, a pad  [m]
 
   CDEM_HD bool operator()(One node) const {
     if (!own[node.i]) return false;
     const Real* box = fence + 8 * std::size_t(node.i);
-    const Vec3<Real> now = rigid.nodes.position(node.i);
-    const Vec3<Real> then = now + lookahead_time * rigid.at(node.i);
-    return is_outside(box, now) || is_outside(box, then);
+    const PredictNodes& predict = paths.predict;
+    const Vec3<Real> now = predict.rigid.nodes.position(node.i), v = predict.rigid.at(node.i);
+    const Vec3<Real> then = now + predict.lookahead_time * v;
+    const Real skin = paths.skin(node.i, v, box[3]);
+    return is_outside(box, now, skin) || is_outside(box, then, skin);
   }
 
  private:
-  CDEM_HD static bool is_outside(const Real* box, const Vec3<Real>& x) {
-    return x.x < box[0] || x.y < box[1] || x.z < box[2] || x.x > box[4] || x.y > box[5] ||
-           x.z > box[6];
+  CDEM_HD static bool is_outside(const Real* box, const Vec3<Real>& x, Real skin) {
+    return x.x - skin < box[0] || x.y - skin < box[1] || x.z - skin < box[2] ||
+           x.x + skin > box[4] || x.y + skin > box[5] || x.z + skin > box[6];
   }
 };
 

@@ -59,6 +59,8 @@ void place_predicted_nodes(const Model& m, State& s) {
 
 namespace {
 
+constexpr Real vibration_period = 10;  // [steps]
+
 /// How long the last list has held, and how far the next one looks ahead  [steps].
 struct Outlook {
   std::int64_t lasted;
@@ -95,23 +97,43 @@ void take_paths(const Model& m, State& s) {
 
 }  // namespace
 
-Column<Real> rigid_velocities(const Model& m, const State& s) {
-  Column<Real> velocity;
-  velocity.renew(3 * std::size_t(m.node_count));
-  for_each_item({}, m.node_count, RigidVelocities{rigid_motion(m, s), velocity.data()});
-  return velocity;
+namespace {
+
+/// The coming prediction, from the last one.
+PredictNodes coming_prediction(const Model& m, const State& s) {
+  const Outlook outlook = Outlook::of(m, s);
+  const OuterList& outer = s.search.outer;
+  const bool known = outer.node_predicted.size() > 0;
+  return {.rigid = rigid_motion(m, s),
+          .predicted_nodes = nullptr,
+          .length = nullptr,
+          .place_before = known ? outer.node_predicted.data() : nullptr,
+          .predicted_before = outer.predicted.data(),
+          .lookahead_time = s.dt * outlook.ahead,
+          .period = vibration_period * s.dt,
+          .least = least_skin(s, outlook.lasted),
+          .most = widest_skin,
+          .predicted = nullptr};
+}
+
+}  // namespace
+
+Column<Real> coming_paths(const Model& m, const State& s, const Column<Real>& length) {
+  Column<Real> rows;
+  rows.renew(4 * std::size_t(m.node_count));
+  for_each_item({}, m.node_count,
+                ListComingPaths{{coming_prediction(m, s)}, length.data(), rows.data()});
+  return rows;
 }
 
 bool leaves_fence(const Model& m, const State& s) {
-  const LeavesFence leaves{.rigid = rigid_motion(m, s),
+  const LeavesFence leaves{.paths = {coming_prediction(m, s)},
                            .own = s.share.counted("nodes").own,
-                           .fence = s.share.fence.data(),
-                           .lookahead_time = s.dt * Outlook::of(m, s).ahead};
+                           .fence = s.share.fence.data()};
   return any_rank(s, any_item({}, m.node_count, leaves));
 }
 
 void predict_motion(const Model& m, State& s) {
-  constexpr Real period = 10;  // of vibrations, in steps
   OuterList& outer = s.search.outer;
   const Outlook outlook = Outlook::of(m, s);
   outer.least_skin = least_skin(s, outlook.lasted);
@@ -131,7 +153,7 @@ void predict_motion(const Model& m, State& s) {
                              .place_before = place_before.data(),
                              .predicted_before = predicted_before.data(),
                              .lookahead_time = outer.lookahead_time,
-                             .period = period * s.dt,
+                             .period = vibration_period * s.dt,
                              .least = outer.least_skin,
                              .most = widest_skin,
                              .predicted = outer.predicted.data()});

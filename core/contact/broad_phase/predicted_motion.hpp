@@ -19,8 +19,9 @@ inline constexpr Real widest_skin = 0.1;
 /// change of velocity since the last rebuild would make once more.
 void predict_motion(const Model& model, State& state);
 
-/// Velocities of all nodes with which paths are predicted, rows of 3  [m/s].
-Column<Real> rigid_velocities(const Model& model, const State& state);
+/// Velocities of the next prediction [m/s] and skins at most [m] of all nodes, rows of 4; for faces
+/// up to these L  [m].
+Column<Real> coming_paths(const Model& model, const State& state, const Column<Real>& length);
 
 /// May the next prediction lead a node of any rank out of the box that ghosts were found for?
 bool leaves_fence(const Model& model, const State& state);

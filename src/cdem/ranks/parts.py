@@ -21,12 +21,38 @@ Indices = NDArray[np.int64]
 FACE_WEIGHT = 3.0
 """Work of an exposed face over the work of an element, about."""
 ROOM = 0.1
-"""Motion that a fence leaves to a node on each side, in parts of L; besides the velocity."""
+"""Motion that a fence leaves to a node on each side, in parts of L; besides velocity and skin."""
+GROWTH = 1.5
+"""Growth of the skins of nodes that a fence leaves room for."""
 SWEPT_STEPS = 400
 """A fence leaves room for the present velocity over so many steps."""
 REACH = 0.08
-"""Distance at which the search lists faces that nothing brings nearer, in parts of L: depth of a
-new contact, indentation and tolerance."""
+"""Half of the distance at which the search lists faces that nothing brings nearer, in parts of the
+smaller L: depth of a new contact, indentation and tolerance."""
+DEPTH = 0.15
+"""Half of the depth at which a vertex may be behind the face that it touches. It may then be beyond
+the element, if the block goes on there."""
+FACES = {"tet4": 4, "pyramid5": 5, "wedge6": 5, "hex8": 6}
+EDGES = {
+    "tet4": [(0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)],
+    "pyramid5": [(0, 1), (1, 2), (2, 3), (3, 0), (0, 4), (1, 4), (2, 4), (3, 4)],
+    "wedge6": [(0, 1), (1, 2), (2, 0), (3, 4), (4, 5), (5, 3), (0, 3), (1, 4), (2, 5)],
+    "hex8": [
+        (0, 1),
+        (1, 2),
+        (2, 3),
+        (3, 0),
+        (4, 5),
+        (5, 6),
+        (6, 7),
+        (7, 4),
+        (0, 4),
+        (1, 5),
+        (2, 6),
+        (3, 7),
+    ],
+}
+"""Edges of an element, by its corners."""
 
 
 @dataclass
@@ -38,27 +64,41 @@ class Mesh:
         corner_node: Node of each corner.
         count: Number of elements.
         face_element: Element behind each exterior face.
+        is_alone: Whether all faces of an element are exterior ones.
+        edge_element: Element of each edge of an element.
+        edge_nodes: Ends of these edges, shape (edges, 2).
     """
 
     corner_element: Indices
     corner_node: Indices
     count: int
     face_element: Indices
+    is_alone: NDArray[np.bool_]
+    edge_element: Indices
+    edge_nodes: Indices
 
     @classmethod
     def of(cls, core: Core) -> Mesh:
         """The mesh of a core."""
-        arrays, elements, nodes, first = core.model(), [], [], 0
+        arrays, first = core.model(), 0
+        elements, nodes, faces, edge_elements, edges = [], [], [], [], []
         counts = {kind["name"]: kind["count"] for kind in core.describe_rows()}
         for shape, corners in NODES.items():
             count = counts[shape]
-            table = arrays[f"{shape}.nodes"].reshape(corners, -1)[:, :count]
-            nodes.append(table.T.ravel())
-            elements.append(np.repeat(np.arange(first, first + count), corners))
+            table = arrays[f"{shape}.nodes"].reshape(corners, -1)[:, :count].T.astype(np.int64)
+            of_shape = np.arange(first, first + count)
+            nodes.append(table.ravel())
+            elements.append(np.repeat(of_shape, corners))
+            faces.append(np.full(count, FACES[shape]))
+            edges.append(table[:, EDGES[shape]].reshape(-1, 2))
+            edge_elements.append(np.repeat(of_shape, len(EDGES[shape])))
             first += count
+        face_element = arrays["face.element"].astype(np.int64)
         return cls(
-            np.concatenate(elements), np.concatenate(nodes).astype(np.int64), first,
-            arrays["face.element"].astype(np.int64),
+            corner_element=np.concatenate(elements), corner_node=np.concatenate(nodes),
+            count=first, face_element=face_element,
+            is_alone=np.bincount(face_element, minlength=first) == np.concatenate(faces),
+            edge_element=np.concatenate(edge_elements), edge_nodes=np.concatenate(edges),
         )  # fmt: skip
 
     def lowest_element(self, nodes: int) -> Indices:
@@ -141,33 +181,82 @@ def _bisect(at: Array, weight: Array, some: Indices, first: int, count: int, ran
 
 
 @dataclass
-class Fences:
-    """Boxes that nodes and elements must not leave, for ghosts to be all that are needed.
+class Boxes:
+    """Boxes of a search.
 
     Attributes:
-        of_nodes: Of the paths of nodes without their skins, rows of 8 as in the core.
-        of_elements: Of the search for contacts around elements, rows of lowest and highest x y z.
+        sides: Rows of lowest and highest x y z [m].
+        reach: Half of the distance at which they are near each other [m]; the smaller one counts.
+    """
+
+    sides: Array
+    reach: Array
+
+    def some(self, which: NDArray[np.bool_]) -> Boxes:
+        """Some of them."""
+        return Boxes(self.sides[which], self.reach[which])
+
+    def and_others(self, others: Boxes) -> Boxes:
+        """These, then others."""
+        return Boxes(
+            np.vstack([self.sides, others.sides]), np.concatenate([self.reach, others.reach])
+        )
+
+    def near(self, others: Boxes) -> NDArray[np.bool_]:
+        """Which of them are near one of others."""
+        every, flags = (
+            self.and_others(others),
+            np.zeros(len(self.reach) + len(others.reach), np.int8),
+        )
+        flags[len(self.reach) :] = 1
+        near = native.near_boxes(every.sides.ravel(), every.reach, flags)
+        found: NDArray[np.bool_] = near[: len(self.reach)] != 0
+        return found
+
+
+@dataclass
+class Fences:
+    """Boxes that nodes must not leave, for ghosts to be all that are needed.
+
+    Attributes:
+        of_nodes: Of the paths of nodes with their skins, rows of 8 as in the core.
+        nodes: The same as boxes of a search.
     """
 
     of_nodes: Array
-    of_elements: Array
+    nodes: Boxes
 
     @classmethod
-    def around(cls, core: Core, mesh: Mesh, room: float = ROOM) -> Fences:
-        """Fences around elements where they are now, and where they go."""
-        motion, arrays = rows_of(core, "node.motion"), core.model()
-        ahead = SWEPT_STEPS * core.scalars()["dt"]
-        then = motion.position + ahead * core.rigid_velocities().reshape(-1, 3)
-        size = _lengths(arrays["face.length"], arrays["face.nodes"], len(then))
-        deep = size * (native.widest_skin + REACH) + core.lift()
-        low = np.minimum(motion.position, then) - room * size[:, None]
-        high = np.maximum(motion.position, then) + room * size[:, None]
-        pad = np.zeros((len(then), 1))
-        boxes = np.empty((mesh.count, 6))
-        boxes[:, :3], boxes[:, 3:] = np.inf, -np.inf
-        np.minimum.at(boxes[:, :3], mesh.corner_element, (low - deep[:, None])[mesh.corner_node])
-        np.maximum.at(boxes[:, 3:], mesh.corner_element, (high + deep[:, None])[mesh.corner_node])
-        return cls(np.hstack([low, pad, high, pad]), boxes)
+    def around(cls, core: Core, mesh: Mesh) -> Fences:
+        """Fences around nodes where they are now, and where they go."""
+        arrays = core.model()
+        position = rows_of(core, "node.motion").position
+        length = arrays["face.length"]
+        size = _lengths(length, arrays["face.nodes"], len(position))
+        paths = core.coming_paths(size).reshape(-1, 4)
+        then = position + SWEPT_STEPS * core.scalars()["dt"] * paths[:, :3]
+        usual = np.median(length) if len(length) else 0.0
+        room = (ROOM * np.minimum(size, usual) + GROWTH * paths[:, 3])[:, None]
+        low, high = np.minimum(position, then) - room, np.maximum(position, then) + room
+        reach = np.full(len(size), REACH)
+        reach[mesh.corner_node[~mesh.is_alone[mesh.corner_element]]] += DEPTH
+        fences = np.hstack([low, size[:, None], high, np.zeros((len(size), 1))])
+        return cls(fences, Boxes(np.hstack([low, high]), reach * size + core.lift()))
+
+    def of_elements(self, mesh: Mesh) -> Boxes:
+        """Boxes of elements."""
+        sides, reach = np.empty((mesh.count, 6)), np.zeros(mesh.count)
+        sides[:, :3], sides[:, 3:] = np.inf, -np.inf
+        np.minimum.at(sides[:, :3], mesh.corner_element, self.nodes.sides[mesh.corner_node, :3])
+        np.maximum.at(sides[:, 3:], mesh.corner_element, self.nodes.sides[mesh.corner_node, 3:])
+        np.maximum.at(reach, mesh.corner_element, self.nodes.reach[mesh.corner_node])
+        return Boxes(sides, reach)
+
+    def of_edges(self, nodes: Indices) -> Boxes:
+        """Boxes of edges, given by their ends."""
+        one, other = self.nodes.sides[nodes[:, 0]], self.nodes.sides[nodes[:, 1]]
+        low, high = np.minimum(one[:, :3], other[:, :3]), np.maximum(one[:, 3:], other[:, 3:])
+        return Boxes(np.hstack([low, high]), self.nodes.reach[nodes].max(axis=1))
 
 
 def _lengths(length: Array, nodes: NDArray[np.integer], count: int) -> Array:
@@ -180,18 +269,26 @@ def _lengths(length: Array, nodes: NDArray[np.integer], count: int) -> Array:
     return largest
 
 
-def needed(core: Core, mesh: Mesh, parts: Parts, fences: Fences, rank: int) -> Indices:
-    """Elements that a rank needs: own ones, and two layers of ghosts.
+def needed(
+    core: Core, mesh: Mesh, parts: Parts, fences: Fences, rank: int
+) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+    """Elements that a rank needs: its own and ghosts.
 
     The forces on own nodes come from elements there, from bonds, and from contacts of faces near
-    them; whom such a face touches depends on the faces near it.
+    them. Whom the vertices and edges of such a face touch there depends on the faces near these.
+
+    Returns:
+        Own elements and those that act on own nodes; all that are needed.
     """
     own = parts.of_node == rank
     found = (parts.of_element == rank) | mesh.at_nodes(own | _bolted(core, own))
-    for _ in range(2):
-        near = native.near_boxes(fences.of_elements.ravel(), found.astype(np.int8)) != 0
-        found = near | _with_partners(core, mesh, found)
-    return np.flatnonzero(found)
+    boxes = fences.of_elements(mesh)
+    acting = boxes.near(boxes.some(found)) | _with_partners(core, mesh, found)
+    if core.asks_area():  # the area of a contact depends on all that touch its faces
+        return acting, boxes.near(boxes.some(acting)) | acting
+    edges = fences.of_edges(mesh.edge_nodes[acting[mesh.edge_element]])
+    choosing = edges.some(edges.near(boxes.some(found)))
+    return acting, boxes.near(boxes.some(found).and_others(choosing)) | acting
 
 
 def _bolted(core: Core, some: NDArray[np.bool_]) -> NDArray[np.bool_]:

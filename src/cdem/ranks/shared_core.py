@@ -31,7 +31,7 @@ SUMS = {"energies", "unbalance_ratio", "step_limit", "stable_step"}
 """Sums and largest values over all parts; of the whole state where that is known, by any rank."""
 TOGETHER = {"renew_step", "leave_adaptive", "change_mass", *SCALARS}
 """Changes that ranks make in their parts, all at the same time."""
-OF_MODEL = {"model", "absent_fields", "describe", "describe_scalars", "lift"}
+OF_MODEL = {"model", "absent_fields", "describe", "describe_scalars", "lift", "asks_area"}
 """What reads the model alone, which every rank has."""
 READS = {"rebuilt", "describe_rows", "stress", "yielded", "bond_places"}
 """What only reads: from the whole state, put together on every rank where it is not known."""
@@ -149,6 +149,7 @@ class SharedCore:
     def run(self, steps: int, end_time: float = 1e300, **goal: Any) -> tuple[str, int, float]:
         """Do steps, see `Core.run`; ghosts are found anew when rock has moved."""
         while True:
+            is_new = self._part is None
             part = self._cut()
             before = part.scalars()["step"]
             self._forget_whole()
@@ -156,6 +157,8 @@ class SharedCore:
             steps -= part.scalars()["step"] - before
             if outcome != "ghosts_due":
                 break
+            if is_new and part.scalars()["step"] == before:
+                raise RuntimeError(f"ghosts are due at once at step {before}; please report this case")
             self._put_together()
             self._part = None
         if outcome == "lost_contact":  # by exposed face
@@ -235,23 +238,26 @@ class SharedCore:
     def _cut(self) -> Core:
         """The part of this rank, cut out of the whole where that has changed."""
         if self._part is None:
-            parts = divide(self._whole, self._mesh, self.exchange.count)
-            fences = Fences.around(self._whole, self._mesh)
-            elements = needed(self._whole, self._mesh, parts, fences, self.exchange.rank)
-            if not len(elements):  # more ranks than blocks: a ghost, as no core can be empty
-                elements = np.zeros(1, np.int64)
-            own = Slice(self._whole, elements, parts.of_element, parts.of_node, self.exchange.rank)
-            self._slice, self._part = own, self._part_of(own, parts, fences)
+            whole = self.whole()
+            parts = divide(whole, self._mesh, self.exchange.count)
+            fences = Fences.around(whole, self._mesh)
+            rank = self.exchange.rank
+            acting, found = needed(self._whole, self._mesh, parts, fences, rank)
+            found[0] |= not found.any()  # of more ranks than blocks: no core can be empty
+            own = Slice(self._whole, np.flatnonzero(found), parts.of_element, parts.of_node, rank)
+            far = ~acting[self._mesh.face_element[own.keep["faces"]]]
+            self._slice, self._part = own, self._part_of(own, parts, fences, far)
             self._rows = {}
             self.shared += 1
         return self._part
 
-    def _part_of(self, own: Slice, parts: Parts, fences: Fences) -> Core:
+    def _part_of(self, own: Slice, parts: Parts, fences: Fences, far: NDArray[np.bool_]) -> Core:
         whole, core = self._whole, native.Core()
         core.take_counts(own.counts())
         core.take_settings(whole)
         core.take_model(own.model())
-        core.take_share(self.exchange, self._share_of(own, parts, fences))
+        share = self._share_of(own, parts, fences) | {"far": far.astype(np.int8)}
+        core.take_share(self.exchange, share)
         motion = whole.fields()["node.motion"].reshape(-1, 8)[own.keep["nodes"], :3]
         core.start(np.ascontiguousarray(motion).ravel())
         core.restore(own.state(), whole.scalars())
