@@ -11,17 +11,29 @@ import numpy as np
 import pytest
 
 sys.path.insert(0, str(Path(__file__).parent))
-from golden_scenes import GOLDEN, SCENES, digest, digest_of_results, thrown
+from golden_scenes import (
+    FIXED,
+    GOLDEN,
+    SCENES,
+    SOFT,
+    WEIGHT,
+    box,
+    digest,
+    digest_of_results,
+    finish,
+    thrown,
+)
+from scenes import case
 from shared.ranks import on_ranks
-from staged_scenes import run_stages
 
+from cdem.errors import CdemError
 from cdem.ranks import parts, shared_core
-from cdem.ranks.parts import Parts
+from cdem.ranks.parts import Fences, Parts
 
 PINNED = json.loads(GOLDEN.read_text())["scenes"]
 DEAR = ("landslide", "leaving", "flowing", "rubble", "defaults")
 COUNTS = (2, 3, 7)
-QUICK = [(name, COUNTS[n % 3]) for n, name in enumerate(n for n in SCENES if n not in DEAR)]
+QUICK = [(name, COUNTS[n % 3]) for n, name in enumerate(sorted(SCENES.keys() - set(DEAR)))]
 SLOW = [(name, count) for name in SCENES for count in COUNTS if (name, count) not in QUICK]
 
 
@@ -36,6 +48,35 @@ def test_results_are_those_pinned(name, count):
 def rubble(steps=250):
     """Tets without bonds fall apart on a bed."""
     return thrown(1, 0, steps, divisions=(2, 2, 3))
+
+
+def split(groups, boxes, interface, steps, **more):
+    """Groups of elements that are blocks of their own."""
+    blocks = [box(group, *of) for group, of in zip(groups, boxes, strict=True)]
+    stage = {"name": "run", "mode": "dynamic", "duration": 1, "damping": {"contact": 0.1}}
+    more["model"] = {"split": dict.fromkeys(groups, "elements")}
+    data = case(
+        blocks, groups, interfaces={"default": interface}, rock=SOFT, stages=[stage], **more
+    )
+    return finish(data, steps, 1)
+
+
+def cohesive(steps=400):
+    """A row of tets hits a bed and breaks; what touches then holds by its area."""
+    law = {"law": "residual", "friction_angle": 30, "cohesion": 2e4, "tensile_strength": 1e4}
+    groups = {"row": {"velocity": [0.2, 0.1, -3]}, "bed": FIXED}
+    boxes = ([4, 0.33, 0.33], [0, 0, 0.002], (12, 1, 1), "tet4"), ([5, 2, 1], [-0.4, -0.8, -1])
+    return split(groups, boxes, law | {"residual_cohesion": 8e3}, steps, loads=WEIGHT)
+
+
+def meeting(steps=450):
+    """Tets at rest, far from others, fall on them."""
+    boxes = (
+        ([1, 1, 1], [0, 0, 0], (2, 2, 2), "tet4"),
+        ([1, 1, 1], [1.15, 0.3, 0.2], (2, 2, 2), "tet4"),
+    )
+    groups, pull = {"left": {}, "right": FIXED}, {"gravity": [800, 0, 0]}
+    return split(groups, boxes, {"friction_angle": 30}, steps, loads=pull)
 
 
 # ------------------------------------------------------------------ elements dealt in other ways
@@ -69,6 +110,7 @@ def none_at_some(units, count, random):
 DEALS = (at_random, one_alone, most_at_the_last, none_at_some)
 DEALT = {
     "rubble": lambda: digest_of_results(rubble()),
+    "cohesive": lambda: digest_of_results(cohesive()),
     "breaking": lambda: digest("breaking", 1),
     "bolted": lambda: digest("bolted", 1),
     "soaked": lambda: digest("soaked", 1),
@@ -78,7 +120,7 @@ DEALT = {
 @cache
 def expected(name):
     """Hash on one rank."""
-    return PINNED.get(name) if name != "rubble" else DEALT[name]()
+    return DEALT[name]() if name in ("rubble", "cohesive") else PINNED[name]
 
 
 def dealt_by(deal, seed):
@@ -94,9 +136,61 @@ def dealt_by(deal, seed):
     return divide
 
 
-@pytest.mark.parametrize("deal", DEALS)
-@pytest.mark.parametrize("name", DEALT)
+@pytest.mark.parametrize(
+    ("name", "deal"),
+    [
+        pytest.param(name, deal, marks=[pytest.mark.slow] * (name == "soaked" and n > 0))
+        for name in DEALT
+        for n, deal in enumerate(DEALS)
+    ],
+)
 def test_any_deal_of_the_elements_gives_the_same(name, deal, monkeypatch):
     monkeypatch.setattr(shared_core, "divide", dealt_by(deal, seed=len(name)))
     count = 3
     assert on_ranks(count, lambda _: DEALT[name]()) == [expected(name)] * count
+
+
+# ------------------------------------------------------------------ teeth: too few ghosts are noticed
+
+
+def fewer(which):
+    """`parts.needed` with fewer ghosts."""
+
+    def needed(core, mesh, dealt, fences, rank):
+        at_own = (dealt.of_element == rank) | mesh.at_nodes(dealt.of_node == rank)
+        if which == "no others":
+            return at_own, at_own
+        acting, _ = parts.needed(core, mesh, dealt, fences, rank)
+        return acting, acting
+
+    return needed
+
+
+def is_noticed(count, scene):
+    """Whether no rank has the results of one rank; the parts may not even fit together."""
+    try:
+        found = on_ranks(count, lambda _: digest_of_results(scene()))
+    except CdemError:
+        return True
+    return digest_of_results(scene()) not in found
+
+
+@pytest.mark.parametrize("which", ["no others", "first layer alone"])
+def test_too_few_ghosts_are_noticed(which, monkeypatch):
+    """An area of contact depends on the elements around those that act on own nodes."""
+    monkeypatch.setattr(shared_core, "needed", fewer(which))
+    assert is_noticed(3, cohesive)
+
+
+def test_elements_that_come_near_must_become_ghosts(monkeypatch):
+    """With fences that nothing leaves, ghosts are those of the first step."""
+    around = Fences.around
+
+    def endless(core, mesh):
+        fences = around(core, mesh)
+        fences.of_nodes[:, :3], fences.of_nodes[:, 4:7] = -1e9, 1e9
+        return fences
+
+    assert not is_noticed(2, meeting)
+    monkeypatch.setattr(Fences, "around", endless)
+    assert is_noticed(2, meeting)
