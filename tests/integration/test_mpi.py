@@ -2,28 +2,13 @@
 
 from __future__ import annotations
 
-import importlib.util
-import os
-import shutil
-import subprocess
-import sys
-import time
 from pathlib import Path
 
 import pytest
+from shared.mpi import needs_mpi, ranks
 
-MPIEXEC = shutil.which("mpiexec", path=f"{Path(sys.executable).parent}:{os.environ['PATH']}")
-pytestmark = pytest.mark.skipif(
-    MPIEXEC is None or importlib.util.find_spec("mpi4py") is None,
-    reason="needs mpi4py and mpiexec: pip install mpi4py mpich",
-)
+pytestmark = needs_mpi
 END = 10.0  # all ranks end so long after one fails [s]
-ENVIRONMENT = {
-    "OMPI_ALLOW_RUN_AS_ROOT": "1",
-    "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
-    "PRTE_MCA_rmaps_default_mapping_policy": ":oversubscribe",
-}
-
 CALLS = """
 import numpy as np
 from mpi4py import MPI
@@ -126,20 +111,6 @@ if how == "unlinked":
     e.link([Neighbour(1, slice(0, 1), slice(0, 0))] if e.rank == 0 else [])
 e.add_up(np.zeros(1, np.int64))
 """
-
-
-def ranks(count: int, *words: str | Path, cwd: Path | None = None, **more: str):
-    """Start Python on several ranks; returns exit status, stdout, stderr and the time it took [s]."""
-    began = time.monotonic()
-    done = subprocess.run(
-        [MPIEXEC, "-n", str(count), sys.executable, *words],
-        capture_output=True,
-        text=True,
-        timeout=120,
-        cwd=cwd,
-        env=os.environ | ENVIRONMENT | more,
-    )
-    return done.returncode, done.stdout, done.stderr, time.monotonic() - began
 
 
 def failing(tmp_path: Path, how: str, **more: str):

@@ -55,9 +55,9 @@ class SharedResults:
         self._do(lambda results: results.open(sim), sim)
 
     def reopen(self, sim: RunState, attributes: Attributes) -> None:
-        """See `Results`."""
+        """See `Results`; no rank has a part of the model yet."""
         self._tracks = tracks(sim)
-        self._do(lambda results: results.reopen(sim, attributes), sim)
+        self._do(lambda results: results.reopen(sim, attributes))
 
     def hold(self) -> None:
         """See `Results`."""
