@@ -30,8 +30,12 @@ SHORT = {
 """Templates, and what makes them short."""
 
 
+def path_of(name: str) -> Path:
+    return next(TEMPLATES.rglob(f"{name}.yaml"))
+
+
 def case_of(name: str) -> Case:
-    return Case.load(TEMPLATES / f"{name}.yaml", SHORT[name])
+    return Case.load(path_of(name), SHORT[name])
 
 
 def run(name: str, folder: Path, exchange=None, stop_at: int | None = None, **how) -> int:
@@ -93,7 +97,7 @@ def test_a_run_goes_on_on_any_number_of_ranks(whole, tmp_path, monkeypatch):
 def test_the_program_leaves_the_same_files_on_ranks(name, count, tmp_path):
     run(name, tmp_path / "one")
     settings = [word for setting in SHORT[name] for word in ("--set", setting)]
-    words = ["run", TEMPLATES / f"{name}.yaml", "-o", "of ranks", "--threads", "1", *settings]
+    words = ["run", path_of(name), "-o", "of ranks", "--threads", "1", *settings]
     status, said, errors, _ = ranks(count, "-m", "cdem", *words, cwd=tmp_path)
     assert (status, said) == (0, "finished; results are in of ranks\n"), errors
     assert (tmp_path / "of ranks" / "report.html").read_text().rstrip().endswith("</html>")

@@ -481,6 +481,8 @@ class Simulation(RunState):
         try:
             outcome, culprit, value = advance()
         except RuntimeError as error:  # the core has no room left for contacts
+            if self._exchange:  # maybe on this rank alone: the others do not help to tell more
+                raise
             raise self._failed(f"{error}. A smaller time.safety may help too.") from None
         if outcome in ("steps_done", "time_reached", "converged"):
             return outcome
