@@ -197,6 +197,7 @@ class SharedCore:
     def run(self, steps: int, end_time: float = 1e300, **goal: Any) -> tuple[str, int, float]:
         """Do steps, see `Core.run`; ghosts are found anew when rock has moved."""
         while True:
+            is_new = self._part is None
             part = self._cut()
             before = part.scalars()["step"]
             self._forget_whole()
@@ -206,6 +207,8 @@ class SharedCore:
             steps -= part.scalars()["step"] - before
             if outcome != "ghosts_due":
                 break
+            if is_new and part.scalars()["step"] == before:
+                raise RuntimeError(f"ghosts are due at once at step {before}; please report this case")
             self._put_together()
             self._part = None
         self._balance()
@@ -310,6 +313,7 @@ class SharedCore:
             fences = Fences.around(whole, self._mesh)
             rank = self.exchange.rank
             acting, found = needed(self._whole, self._mesh, parts, fences, rank)
+            found[0] |= not found.any()  # of more ranks than blocks: no core can be empty
             own = Slice(self._whole, np.flatnonzero(found), parts.of_element, parts.of_node, rank)
             far = ~acting[self._mesh.face_element[own.keep["faces"]]]
             self._slice, self._part = own, self._part_of(own, parts, fences, far)
