@@ -146,10 +146,10 @@ def divide(core: Core, mesh: Mesh, count: int, work: Array) -> Parts:
     together = _units(core, mesh)
     units = int(together.max(initial=-1)) + 1
     at = np.zeros((units, 3))
-    weight = np.bincount(together, work, units)
+    weight = np.bincount(together, work, units).astype(float)
     np.add.at(at, together, center * work[:, None])
     of_unit = np.zeros(units, np.int64)
-    _bisect(at / weight[:, None], weight, np.arange(units), 0, count, of_unit)
+    _bisect(at / weight[:, None], weight, np.arange(units, dtype=np.int64), 0, count, of_unit)
     of_element = of_unit[together]
     lowest = mesh.lowest_element(len(position))
     return Parts(of_element, of_element[lowest])
@@ -159,7 +159,7 @@ def work_of(core: Core, mesh: Mesh) -> Array:
     """Work of each element in a step, about: its own, and of contacts that its faces may have."""
     fields = core.fields()
     element = mesh.face_element[fields["search.exposed_face"]]
-    work = 1 + FACE_WORK * np.bincount(element, minlength=mesh.count)
+    work: Array = 1 + FACE_WORK * np.bincount(element, minlength=mesh.count).astype(float)
     if len(first := fields["outer.slot_first"]):
         pairs = np.add.reduceat(np.diff(first), np.arange(0, len(first) - 1, 4))
         work += PAIR_WORK * np.bincount(element, pairs, mesh.count)
@@ -259,6 +259,7 @@ class Fences:
         reach = np.full(len(size), REACH)
         reach[mesh.corner_node[~mesh.is_alone[mesh.corner_element]]] += DEPTH
         fences = np.hstack([low, size[:, None], high, np.zeros((len(size), 1))])
+        fences[size == 0, :3], fences[size == 0, 4:7] = -np.inf, np.inf  # on no face: in no list
         return cls(fences, Boxes(np.hstack([low, high]), reach * size + core.lift()))
 
     def of_elements(self, mesh: Mesh) -> Boxes:

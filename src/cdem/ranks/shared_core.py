@@ -208,7 +208,9 @@ class SharedCore:
             if outcome != "ghosts_due":
                 break
             if is_new and part.scalars()["step"] == before:
-                raise RuntimeError(f"ghosts are due at once at step {before}; please report this case")
+                raise RuntimeError(
+                    f"ghosts are due at once at step {before}; please report this case"
+                )
             self._put_together()
             self._part = None
         self._balance()
@@ -264,12 +266,14 @@ class SharedCore:
         return say
 
     def _in_part(self, name: str) -> Callable[..., Any]:
-        act = getattr(self._part, name)
+        part = self._part
+        assert part is not None
+        act = getattr(part, name)
 
         def change(*arguments: Any, **named: Any) -> Any:
             if name in SCALARS:
                 result = act(*arguments, **named)
-                self._whole.restore({}, self._part.scalars())
+                self._whole.restore({}, part.scalars())
                 return result
             self._forget_whole()
             return act(*arguments, **named)
@@ -306,7 +310,7 @@ class SharedCore:
             work = work_of(whole, self._mesh)
             if self._parts is not None and self._pace is not None:
                 of_rank = np.bincount(self._parts.of_element, work, self.exchange.count)
-                of_rank /= of_rank.mean()
+                of_rank = of_rank / of_rank.mean()
                 work *= (self._pace / np.maximum(of_rank, 0.01))[self._parts.of_element]
             parts = divide(whole, self._mesh, self.exchange.count, work)
             self._parts, self._pace, self._busy = parts, None, 0.0
@@ -361,18 +365,18 @@ class SharedCore:
         lengths = np.array([len(those) for those in wanted])
         all_lengths = np.array(self.exchange.gather_rows(lengths)).reshape(count, count)
         asked = self.exchange.gather_rows(np.concatenate(wanted))
-        send, receive, neighbours = [], [], []
+        send: list[NDArray[np.int32]] = []
+        receive: list[NDArray[np.int32]] = []
+        neighbours, sent, received = [], 0, 0
         for other in range(count):
             first = all_lengths[other, :rank].sum()
             of_other = asked[other][first : first + all_lengths[other, rank]]
-            sent, received = sum(map(len, send)), sum(map(len, receive))
             send.append(local[of_other])
             receive.append(local[wanted[other]])
-            if len(of_other) or len(wanted[other]):
-                neighbours.append(Neighbour(
-                    other, slice(sent, sent + len(of_other)),
-                    slice(received, received + len(wanted[other])),
-                ))  # fmt: skip
+            ends = sent + len(of_other), received + len(wanted[other])
+            if ends != (sent, received):
+                neighbours.append(Neighbour(other, slice(sent, ends[0]), slice(received, ends[1])))
+            sent, received = ends
         self.exchange.link(neighbours)
         return {"send": np.concatenate(send), "receive": np.concatenate(receive)}
 

@@ -194,7 +194,8 @@ def filled(some: Rows, joined: Flags) -> Rows:
     """
     count = len(joined)
     blocks = -(-count // BLOCK)
-    of_block = np.pad(joined, (0, blocks * BLOCK - count)).reshape(blocks, BLOCK).any(axis=1)
+    of_block: Flags = np.zeros(blocks, bool)
+    of_block[np.flatnonzero(joined) // BLOCK] = True
     kept = np.zeros(count, bool)
     kept[some] = True
     block = np.arange(count) // BLOCK
@@ -207,7 +208,7 @@ def filled(some: Rows, joined: Flags) -> Rows:
         return np.flatnonzero(kept)
     lacks = -np.bincount(run, kept).astype(np.int64) % BLOCK
     lacks[run[-1]] = 0
-    before = np.cumsum(spare) - spare
+    before: Rows = np.cumsum(spare) - spare
     first = np.searchsorted(run, run)
     kept |= spare & (before - before[first] < lacks[run])
     return np.flatnonzero(kept)

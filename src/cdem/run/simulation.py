@@ -7,7 +7,7 @@ import time
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -34,6 +34,7 @@ from cdem.run.stage_state import StageState
 from cdem.run.state import Attributes, RunState, Setting
 
 if TYPE_CHECKING:
+    from cdem._core import Core
     from cdem.ranks.exchange import Exchange
     from cdem.run.result_folder import Results
     from cdem.run.shared_results import SharedResults
@@ -133,7 +134,7 @@ class Simulation(RunState):
         if self._exchange:
             from cdem.ranks.shared_core import SharedCore
 
-            self.core = self.build.core = SharedCore(self.core, self._exchange)
+            self.core = self.build.core = cast("Core", SharedCore(self.core, self._exchange))
         self.audit = Audit(self.build, self.overlap, self.threads)
         if strict:
             self.audit.refuse_warnings()
