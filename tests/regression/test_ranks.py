@@ -139,7 +139,9 @@ def dealt_by(deal, seed):
 @pytest.mark.parametrize(
     ("name", "deal"),
     [
-        pytest.param(name, deal, marks=[pytest.mark.slow] * (name == "soaked" and n > 0))
+        pytest.param(
+            name, deal, marks=[pytest.mark.slow] * (n > 0 and name in ("soaked", "breaking"))
+        )
         for name in DEALT
         for n, deal in enumerate(DEALS)
     ],
