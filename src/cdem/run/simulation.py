@@ -335,10 +335,7 @@ class Simulation(RunState):
                 note,
                 stage.note(self.step_count - stage.start_step, self.core.unbalance_ratio()),
             )
-            if self._agreed(progress is not None):
-                now_shown = shown.progress(self, stage, speed, note)
-                if progress:
-                    progress(now_shown)
+            self._show(progress, stage, speed, note)
             if note and not known and self.results:
                 self.results.log(f"{stage.name}: {note}")
             if status is not None:
@@ -354,6 +351,19 @@ class Simulation(RunState):
             if self.results and self._agreed(now - began > self.case.output.checkpoint_every):
                 began = now
                 self.checkpoint()
+
+    def _show(
+        self,
+        progress: Callable[[Progress], None] | None,
+        stage: StageState,
+        speed: float,
+        note: str,
+    ) -> None:
+        """Call the progress function; ranks look together at what the first one shows."""
+        if self._agreed(progress is not None):
+            now = shown.progress(self, stage, speed, note)
+            if progress:
+                progress(now)
 
     def _agreed(self, number: int) -> int:
         """The number that the first rank has: time and signals are not the same on all."""
