@@ -422,6 +422,9 @@ void bind_diagnostics(nb::class_<Core>& core) {
           "length"_a,
           "Velocities of the next prediction and skins at most of nodes, for faces up to these L.")
       .def(
+          "rebuild_interval", [](const Core& c) { return c.model.rebuild_interval; },
+          "Steps from one rebuild of the pair list to the next; 0: as it is needed.")
+      .def(
           "asks_area", [](const Core& c) { return c.model.interface_traits.ask_area; },
           "Whether a law of the interfaces asks for areas of contacts.")
       .def(

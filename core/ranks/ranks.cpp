@@ -19,13 +19,21 @@ void to_ghosts(State& s, Real* rows, const SentNumbers& numbers) {
   const Index sent = Index(share.send.size()), received = Index(share.receive.size());
   share.out.renew(std::size_t(sent) * numbers.count);
   share.in.renew(std::size_t(received) * numbers.count);
-  for_each_item({}, sent, PackRows{numbers, share.send.data(), rows, share.out.data()});
+  for_each_item({}, sent,
+                PackRows{.numbers = numbers,
+                         .nodes = share.send.data(),
+                         .rows = rows,
+                         .message = share.out.data()});
   finish({});
   {
     const Transfer transfer;
     share.exchange->swap(share.out.data(), sent, share.in.data(), received, numbers.count);
   }
-  for_each_item({}, received, UnpackRows{numbers, share.receive.data(), share.in.data(), rows});
+  for_each_item({}, received,
+                UnpackRows{.numbers = numbers,
+                           .nodes = share.receive.data(),
+                           .message = share.in.data(),
+                           .rows = rows});
 }
 
 void receive_ghosts(State& s) {

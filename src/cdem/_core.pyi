@@ -42,11 +42,18 @@ interface_law_state: int = ...
 
 point_history: int = ...
 
+widest_skin: float = ...
+
 def device_name() -> str: ...
 
 def energy_terms() -> list[dict[str, Any]]:
     """
     Terms of the energy ledger: name, kind (stored, lost, supplied) and meaning.
+    """
+
+def near_boxes(boxes: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], reach: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], flags: Annotated[NDArray[numpy.int8], dict(order='C', device='cpu', writable=False)]) -> NDArray[numpy.int8]:
+    """
+    Flags of the boxes near one with a flag: no farther than twice the smaller reach.
     """
 
 def solve_blocks(system: dict, right: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], part: float, most_iterations: int) -> NDArray[numpy.float64]: ...
@@ -88,6 +95,10 @@ class Core:
 
     def set_lumped(self, arg: bool, /) -> None: ...
 
+    def take_settings(self, whole: Core) -> None: ...
+
+    def take_share(self, exchange: object, share: dict) -> None: ...
+
     def start(self, arg: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], /) -> None: ...
 
     def bond_places(self) -> tuple[NDArray[numpy.float64], NDArray[numpy.int32]]: ...
@@ -97,6 +108,8 @@ class Core:
     def set_initial_tractions(self, stress: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)], bonded: Annotated[NDArray[numpy.int8], dict(order='C', device='cpu', writable=False)]) -> tuple[int, float, int]: ...
 
     def restore(self, arg0: dict[str, NDArray], arg1: dict[str, Any], /) -> None: ...
+
+    def restore_anew(self, arg0: dict[str, NDArray], arg1: dict[str, Any], /) -> None: ...
 
     def prepare(self) -> None: ...
 
@@ -175,6 +188,22 @@ class Core:
         """
 
     def unbalance_ratio(self) -> float: ...
+
+    def coming_paths(self, length: Annotated[NDArray[numpy.float64], dict(order='C', device='cpu', writable=False)]) -> NDArray[numpy.float64]:
+        """
+        Velocities of the next prediction and skins at most of nodes, for faces up to these L.
+        """
+
+    def rebuild_interval(self) -> int:
+        """
+        Steps from one rebuild of the pair list to the next; 0: as it is needed.
+        """
+
+    def asks_area(self) -> bool:
+        """Whether a law of the interfaces asks for areas of contacts."""
+
+    def lift(self) -> float:
+        """Gap up to which contacts that have dilated are kept, at most [m]."""
 
     def stable_step(self, damping: Sequence[float], time: float, weights: Sequence[float], rates: Sequence[float], lumped: bool) -> float:
         """

@@ -25,6 +25,7 @@ from mutant_list import (
     model,
     output,
     package,
+    ranks,
     run,
     screening,
     seismic,
@@ -35,6 +36,7 @@ from mutant_list.mutant import Mutant
 PYTHON = [package, case, mesh, joints, model, run, output, study, screening, seismic, blasts]
 CORE = [
     bindings,
+    ranks,
     core_rest,
     core_surface,
     core_water,

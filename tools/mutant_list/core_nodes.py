@@ -151,8 +151,8 @@ FAULTS = [
         "tile sleep",
         "elements of a tile of which one moves go on sleeping",
         "core/nodes/sleep.cpp",
-        "if (std::find(begin, end, 1) != end) std::fill",
-        "if (count < 0) std::fill",
+        "if (std::find(begin, end, 1) != end && is_joined",
+        "if (count < 0 && is_joined",
         "tests/core/nodes/test_sleep.cpp",
     ),
     Mutant(

@@ -23,8 +23,7 @@ def bounds(domain: Domain) -> tuple[Floats, Floats]:
 def outside(domain: Domain, middle: Floats) -> NDArray[np.bool_]:
     """Whether the middles of blocks are outside, shape (blocks, 3) [m]."""
     low, high = bounds(domain)
-    found: NDArray[np.bool_] = ((middle < low) | (middle > high)).any(axis=1)
-    return found
+    return np.any((middle < low) | (middle > high), axis=1)
 
 
 def leaving(

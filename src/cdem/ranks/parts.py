@@ -18,8 +18,8 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 
-FACE_WEIGHT = 3.0
-"""Work of an exposed face over the work of an element, about."""
+FACE_WORK, PAIR_WORK = 2.0, 1.5
+"""Work of an exposed face, and of a listed pair, over the work of an element, about."""
 ROOM = 0.1
 """Motion that a fence leaves to a node on each side, in parts of L; besides velocity and skin."""
 GROWTH = 1.5
@@ -127,8 +127,9 @@ class Parts:
     of_node: Indices
 
 
-def divide(core: Core, mesh: Mesh, count: int) -> Parts:
-    """Deal the elements to ranks: halves of about the same work, and so on, across the longest side.
+def divide(core: Core, mesh: Mesh, count: int, work: Array) -> Parts:
+    """Deal the elements to ranks: halves of about the same work, cut across where work is
+    spread widest, and so on.
 
     A block with a mass matrix stays together; a node belongs to its first element.
 
@@ -136,23 +137,37 @@ def divide(core: Core, mesh: Mesh, count: int) -> Parts:
         core: The whole model and its state.
         mesh: Its elements.
         count: Number of ranks.
+        work: Of each element.
     """
     position = rows_of(core, "node.motion").position
     center = np.zeros((mesh.count, 3))
     np.add.at(center, mesh.corner_element, position[mesh.corner_node])
     center /= np.bincount(mesh.corner_element, minlength=mesh.count)[:, None]
-    work = np.ones(mesh.count)
-    np.add.at(work, mesh.face_element[core.fields()["search.exposed_face"]], FACE_WEIGHT)
     together = _units(core, mesh)
     units = int(together.max(initial=-1)) + 1
     at = np.zeros((units, 3))
-    weight = np.bincount(together, work, units)
+    weight = np.bincount(together, work, units).astype(float)
     np.add.at(at, together, center * work[:, None])
     of_unit = np.zeros(units, np.int64)
-    _bisect(at / weight[:, None], weight, np.arange(units), 0, count, of_unit)
+    _bisect(at / weight[:, None], weight, np.arange(units, dtype=np.int64), 0, count, of_unit)
     of_element = of_unit[together]
     lowest = mesh.lowest_element(len(position))
     return Parts(of_element, of_element[lowest])
+
+
+def work_of(core: Core, mesh: Mesh) -> Array:
+    """Work of each element in a step, about: its own, and of contacts that its faces may have."""
+    fields = core.fields()
+    element = mesh.face_element[fields["search.exposed_face"]]
+    work: Array = 1 + FACE_WORK * np.bincount(element, minlength=mesh.count).astype(float)
+    if len(first := fields["outer.slot_first"]):
+        pairs = np.add.reduceat(np.diff(first), np.arange(0, len(first) - 1, 4))
+        work += PAIR_WORK * np.bincount(element, pairs, mesh.count)
+    if count := len(fields["outer.ee_codes"]):
+        edges = fields["outer.ee_pairs"].reshape(2, -1)[:, :count]
+        of_edge = element[fields["outer.ee_sides"].reshape(-1, 2)[:, 0] // 4]
+        work += 0.5 * PAIR_WORK * np.bincount(of_edge[edges.ravel()], minlength=mesh.count)
+    return work
 
 
 def _units(core: Core, mesh: Mesh) -> Indices:
@@ -170,8 +185,10 @@ def _bisect(at: Array, weight: Array, some: Indices, first: int, count: int, ran
     if count == 1 or not len(some):
         rank[some] = first
         return
-    extent = np.ptp(at[some], axis=0)
-    some = some[np.argsort(at[some, int(extent.argmax())], kind="stable")]
+    share = weight[some] / weight[some].sum()
+    middle = share @ at[some]
+    spread = share @ (at[some] - middle) ** 2
+    some = some[np.argsort(at[some, int(spread.argmax())], kind="stable")]
     left = count // 2
     sums = np.cumsum(weight[some])
     cut = int(np.searchsorted(sums, sums[-1] * left / count))
@@ -234,13 +251,15 @@ class Fences:
         length = arrays["face.length"]
         size = _lengths(length, arrays["face.nodes"], len(position))
         paths = core.coming_paths(size).reshape(-1, 4)
-        then = position + SWEPT_STEPS * core.scalars()["dt"] * paths[:, :3]
+        steps = max(SWEPT_STEPS, 2 * core.rebuild_interval())
+        then = position + steps * core.scalars()["dt"] * paths[:, :3]
         usual = np.median(length) if len(length) else 0.0
         room = (ROOM * np.minimum(size, usual) + GROWTH * paths[:, 3])[:, None]
         low, high = np.minimum(position, then) - room, np.maximum(position, then) + room
         reach = np.full(len(size), REACH)
         reach[mesh.corner_node[~mesh.is_alone[mesh.corner_element]]] += DEPTH
         fences = np.hstack([low, size[:, None], high, np.zeros((len(size), 1))])
+        fences[size == 0, :3], fences[size == 0, 4:7] = -np.inf, np.inf  # on no face: in no list
         return cls(fences, Boxes(np.hstack([low, high]), reach * size + core.lift()))
 
     def of_elements(self, mesh: Mesh) -> Boxes:

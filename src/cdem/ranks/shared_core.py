@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
@@ -13,7 +14,7 @@ from cdem.ranks.buffers import packed, unpacked
 from cdem.ranks.exchange import Exchange, Neighbour
 from cdem.ranks.kinds import PAIRS, Table
 from cdem.ranks.merge import own_rows, put_together
-from cdem.ranks.parts import Fences, Mesh, Parts, divide, needed
+from cdem.ranks.parts import Fences, Mesh, Parts, divide, needed, work_of
 from cdem.ranks.slices import Slice
 
 if TYPE_CHECKING:
@@ -31,10 +32,22 @@ SUMS = {"energies", "unbalance_ratio", "step_limit", "stable_step"}
 """Sums and largest values over all parts; of the whole state where that is known, by any rank."""
 TOGETHER = {"renew_step", "leave_adaptive", "change_mass", *SCALARS}
 """Changes that ranks make in their parts, all at the same time."""
-OF_MODEL = {"model", "absent_fields", "describe", "describe_scalars", "lift", "asks_area"}
+OF_MODEL = {
+    "model",
+    "absent_fields",
+    "describe",
+    "describe_scalars",
+    "lift",
+    "asks_area",
+    "rebuild_interval",
+}
 """What reads the model alone, which every rank has."""
 READS = {"rebuilt", "describe_rows", "stress", "yielded", "bond_places"}
 """What only reads: from the whole state, put together on every rank where it is not known."""
+
+
+WORTH = 2.0
+"""Parts are dealt anew when waiting has taken so many times the time of that."""
 
 
 class Fields(Mapping[str, NDArray[Any]]):
@@ -54,6 +67,37 @@ class Fields(Mapping[str, NDArray[Any]]):
 
     def __len__(self) -> int:
         return len(self._names)
+
+
+class _Waits:
+    """The exchange as the core has it; counts the time that this rank waits for others.
+
+    Attributes:
+        count: Number of ranks.
+        seconds: Time spent in calls so far [s].
+    """
+
+    def __init__(self, exchange: Exchange) -> None:
+        self._exchange, self.count, self.seconds = exchange, exchange.count, 0.0
+
+    def add_up(self, words: NDArray[np.int64]) -> None:
+        """See `Exchange`."""
+        self._wait(self._exchange.add_up, words)
+
+    def gather(self, own: NDArray[np.uint8], all: NDArray[np.uint8]) -> None:
+        """See `Exchange`."""
+        self._wait(self._exchange.gather, own, all)
+
+    def swap(
+        self, send: NDArray[np.float64], receive: NDArray[np.float64], numbers: int = 1
+    ) -> None:
+        """See `Exchange`."""
+        self._wait(self._exchange.swap, send, receive, numbers)
+
+    def _wait(self, call: Callable[..., None], *arguments: Any) -> None:
+        begin = time.perf_counter()
+        call(*arguments)
+        self.seconds += time.perf_counter() - begin
 
 
 class SharedCore:
@@ -78,6 +122,10 @@ class SharedCore:
         self._whole_is_new, self._is_prepared = True, True
         self._part: Core | None = None
         self._slice: Slice | None = None
+        self._waits = _Waits(exchange)
+        self._parts: Parts | None = None
+        self._pace: NDArray[np.float64] | None = None
+        self._busy = self._cut_seconds = 0.0
         self._known: set[str] = set()
         self._rows: dict[str, NDArray[np.int64]] = {}
         self._counts = {kind["name"]: kind["count"] for kind in whole.describe_rows()}
@@ -153,18 +201,35 @@ class SharedCore:
             part = self._cut()
             before = part.scalars()["step"]
             self._forget_whole()
+            begin = time.perf_counter() - self._waits.seconds
             outcome, culprit, value = part.run(steps, end_time, **goal)
+            self._busy += time.perf_counter() - self._waits.seconds - begin
             steps -= part.scalars()["step"] - before
             if outcome != "ghosts_due":
                 break
             if is_new and part.scalars()["step"] == before:
-                raise RuntimeError(f"ghosts are due at once at step {before}; please report this case")
+                raise RuntimeError(
+                    f"ghosts are due at once at step {before}; please report this case"
+                )
             self._put_together()
             self._part = None
+        self._balance()
         if outcome == "lost_contact":  # by exposed face
             exposed = self.whole().fields()["search.exposed_face"]
             culprit = int(np.searchsorted(exposed, culprit))
         return outcome, culprit, value
+
+    def _balance(self) -> None:
+        """Deal anew what the ranks waited for each other longer than that takes.
+
+        Work is corrected by the time that each rank has needed for its own.
+        """
+        busy = np.concatenate(self.exchange.gather_rows(np.array([self._busy, self._cut_seconds])))
+        spent, cutting = busy[::2], busy[1::2].max()
+        if spent.max() - spent.mean() > WORTH * cutting:
+            self._pace = np.maximum(spent, 0.1 * spent.mean()) / spent.mean()
+            self._put_together()
+            self._part = None
 
     def whole(self) -> Core:
         """The whole model at its present state, on every rank."""
@@ -201,12 +266,14 @@ class SharedCore:
         return say
 
     def _in_part(self, name: str) -> Callable[..., Any]:
-        act = getattr(self._part, name)
+        part = self._part
+        assert part is not None
+        act = getattr(part, name)
 
         def change(*arguments: Any, **named: Any) -> Any:
             if name in SCALARS:
                 result = act(*arguments, **named)
-                self._whole.restore({}, self._part.scalars())
+                self._whole.restore({}, part.scalars())
                 return result
             self._forget_whole()
             return act(*arguments, **named)
@@ -238,8 +305,15 @@ class SharedCore:
     def _cut(self) -> Core:
         """The part of this rank, cut out of the whole where that has changed."""
         if self._part is None:
+            begin = time.perf_counter()
             whole = self.whole()
-            parts = divide(whole, self._mesh, self.exchange.count)
+            work = work_of(whole, self._mesh)
+            if self._parts is not None and self._pace is not None:
+                of_rank = np.bincount(self._parts.of_element, work, self.exchange.count)
+                of_rank = of_rank / of_rank.mean()
+                work *= (self._pace / np.maximum(of_rank, 0.01))[self._parts.of_element]
+            parts = divide(whole, self._mesh, self.exchange.count, work)
+            self._parts, self._pace, self._busy = parts, None, 0.0
             fences = Fences.around(whole, self._mesh)
             rank = self.exchange.rank
             acting, found = needed(self._whole, self._mesh, parts, fences, rank)
@@ -249,6 +323,7 @@ class SharedCore:
             self._slice, self._part = own, self._part_of(own, parts, fences, far)
             self._rows = {}
             self.shared += 1
+            self._cut_seconds = time.perf_counter() - begin
         return self._part
 
     def _part_of(self, own: Slice, parts: Parts, fences: Fences, far: NDArray[np.bool_]) -> Core:
@@ -257,7 +332,7 @@ class SharedCore:
         core.take_settings(whole)
         core.take_model(own.model())
         share = self._share_of(own, parts, fences) | {"far": far.astype(np.int8)}
-        core.take_share(self.exchange, share)
+        core.take_share(self._waits, share)
         motion = whole.fields()["node.motion"].reshape(-1, 8)[own.keep["nodes"], :3]
         core.start(np.ascontiguousarray(motion).ravel())
         core.restore(own.state(), whole.scalars())
@@ -290,18 +365,18 @@ class SharedCore:
         lengths = np.array([len(those) for those in wanted])
         all_lengths = np.array(self.exchange.gather_rows(lengths)).reshape(count, count)
         asked = self.exchange.gather_rows(np.concatenate(wanted))
-        send, receive, neighbours = [], [], []
+        send: list[NDArray[np.int32]] = []
+        receive: list[NDArray[np.int32]] = []
+        neighbours, sent, received = [], 0, 0
         for other in range(count):
             first = all_lengths[other, :rank].sum()
             of_other = asked[other][first : first + all_lengths[other, rank]]
-            sent, received = sum(map(len, send)), sum(map(len, receive))
             send.append(local[of_other])
             receive.append(local[wanted[other]])
-            if len(of_other) or len(wanted[other]):
-                neighbours.append(Neighbour(
-                    other, slice(sent, sent + len(of_other)),
-                    slice(received, received + len(wanted[other])),
-                ))  # fmt: skip
+            ends = sent + len(of_other), received + len(wanted[other])
+            if ends != (sent, received):
+                neighbours.append(Neighbour(other, slice(sent, ends[0]), slice(received, ends[1])))
+            sent, received = ends
         self.exchange.link(neighbours)
         return {"send": np.concatenate(send), "receive": np.concatenate(receive)}
 

@@ -182,6 +182,38 @@ class Slice:
         return new
 
 
+def filled(some: Rows, joined: Flags) -> Rows:
+    """Elements of a shape, with others so that those which share nodes stay in their blocks of eight.
+
+    The forces of such elements are summed tile by tile, which are whole blocks. Elements with nodes of their own may lie
+    in any block, but others that come later must begin at a multiple of eight again.
+
+    Args:
+        some: Elements to keep.
+        joined: Whether each element of the shape shares a node with another one.
+    """
+    count = len(joined)
+    blocks = -(-count // BLOCK)
+    of_block: Flags = np.zeros(blocks, bool)
+    of_block[np.flatnonzero(joined) // BLOCK] = True
+    kept = np.zeros(count, bool)
+    kept[some] = True
+    block = np.arange(count) // BLOCK
+    whole = np.zeros(blocks, bool)
+    whole[block[kept]] = True
+    kept |= (whole & of_block)[block]
+    run = np.cumsum(np.diff(of_block, prepend=False) != 0)[block]  # blocks of one kind
+    spare = ~kept & ~of_block[block]
+    if not spare.any():
+        return np.flatnonzero(kept)
+    lacks = -np.bincount(run, kept).astype(np.int64) % BLOCK
+    lacks[run[-1]] = 0
+    before: Rows = np.cumsum(spare) - spare
+    first = np.searchsorted(run, run)
+    kept |= spare & (before - before[first] < lacks[run])
+    return np.flatnonzero(kept)
+
+
 class _Cut:
     """Chooses the rows of every kind for a `Slice`."""
 
@@ -233,12 +265,17 @@ class _Cut:
 
     def _elements(self, elements: Rows, part: NDArray[Any]) -> None:
         first, kept = 0, [np.zeros(0, np.int64)]
+        corners = {
+            shape: self.tables[f"{shape}.nodes"].rows()[: self.counts[shape]] for shape in SHAPES
+        }
+        at_node = np.bincount(np.concatenate([table.ravel() for table in corners.values()]))
         for shape in SHAPES:
             count = self.counts[shape]
             own = elements[(elements >= first) & (elements < first + count)] - first
-            blocks = found_in([own // BLOCK], (count + BLOCK - 1) // BLOCK)
-            own = (blocks[:, None] * BLOCK + np.arange(BLOCK)).ravel()
-            own = own[own < count]
+            joined = (at_node[corners[shape]] > 1).any(axis=1)
+            if self.tables[f"{shape}.nodal_mean"].is_used:  # a kernel for tiles with such tets
+                joined[:] = True
+            own = filled(own, joined)
             self._put(shape, own, part[first : first + count])
             kept.append(own + first)
             first += count

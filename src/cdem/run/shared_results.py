@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar, cast
 
 from cdem.ranks.first import on_first
 from cdem.run.histories import Track, tracks
@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from cdem.ranks.exchange import Exchange
+    from cdem.ranks.shared_core import SharedCore
     from cdem.run.result_folder import Results
     from cdem.run.state import Attributes, RunState
 
@@ -41,7 +42,7 @@ class SharedResults:
     def _do(self, act: Callable[[Results], Value], sim: RunState | None = None) -> Value | None:
         """Do something with the folder, and with the whole state where that is asked for."""
         if sim is not None:
-            sim.core.whole()
+            cast("SharedCore", sim.core).whole()
         return on_first(self._exchange, lambda: act(self._first))
 
     @property
@@ -93,7 +94,8 @@ class SharedResults:
 
     def ended(self, sim: RunState) -> str | None:
         """See `Results`."""
-        return self._exchange.share_text(self._do(lambda results: results.ended(sim)) or "") or None
+        said = self._do(lambda results: results.ended(sim) or "")
+        return self._exchange.share_text(said or "") or None
 
     def finish(self, sim: RunState, status: str) -> None:
         """See `Results`."""

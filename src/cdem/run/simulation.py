@@ -7,7 +7,7 @@ import time
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -34,6 +34,7 @@ from cdem.run.stage_state import StageState
 from cdem.run.state import Attributes, RunState, Setting
 
 if TYPE_CHECKING:
+    from cdem._core import Core
     from cdem.ranks.exchange import Exchange
     from cdem.run.result_folder import Results
     from cdem.run.shared_results import SharedResults
@@ -133,7 +134,7 @@ class Simulation(RunState):
         if self._exchange:
             from cdem.ranks.shared_core import SharedCore
 
-            self.core = self.build.core = SharedCore(self.core, self._exchange)
+            self.core = self.build.core = cast("Core", SharedCore(self.core, self._exchange))
         self.audit = Audit(self.build, self.overlap, self.threads)
         if strict:
             self.audit.refuse_warnings()
@@ -334,10 +335,7 @@ class Simulation(RunState):
                 note,
                 stage.note(self.step_count - stage.start_step, self.core.unbalance_ratio()),
             )
-            if self._agreed(progress is not None):
-                now_shown = shown.progress(self, stage, speed, note)
-                if progress:
-                    progress(now_shown)
+            self._show(progress, stage, speed, note)
             if note and not known and self.results:
                 self.results.log(f"{stage.name}: {note}")
             if status is not None:
@@ -353,6 +351,19 @@ class Simulation(RunState):
             if self.results and self._agreed(now - began > self.case.output.checkpoint_every):
                 began = now
                 self.checkpoint()
+
+    def _show(
+        self,
+        progress: Callable[[Progress], None] | None,
+        stage: StageState,
+        speed: float,
+        note: str,
+    ) -> None:
+        """Call the progress function; ranks look together at what the first one shows."""
+        if self._agreed(progress is not None):
+            now = shown.progress(self, stage, speed, note)
+            if progress:
+                progress(now)
 
     def _agreed(self, number: int) -> int:
         """The number that the first rank has: time and signals are not the same on all."""

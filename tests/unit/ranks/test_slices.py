@@ -6,7 +6,7 @@ from scenes import simulate
 from shared.shares import core_of, counts_of, differences, slices_of, with_ghosts
 
 from cdem.ranks import slices as module
-from cdem.ranks.slices import Slice
+from cdem.ranks.slices import Slice, filled
 from cdem.rows import rows_of
 
 BAR = {"size": [20, 1, 1], "divisions": [20, 1, 1], "shape": "tet4"}
@@ -56,12 +56,27 @@ def test_labels_of_places_stay_apart_and_together(sim):
     assert (same == was).all()
 
 
-def test_elements_fill_whole_blocks_of_eight(sim, slices):
-    kept = slices[0]
-    count = counts_of(sim.core)["tet4"]
-    blocks, members = np.unique(kept.keep["tet4"] // 8, return_counts=True)
-    assert (members == np.minimum(8, count - 8 * blocks)).all()
-    assert len(kept.keep["elements"]) < counts_of(sim.core)["elements"]
+def test_elements_that_share_nodes_stay_in_their_blocks_of_eight(sim, slices):
+    kept = slices[0].keep["tet4"]
+    nodes = sim.core.model()["tet4.nodes"].reshape(4, -1)[:, : counts_of(sim.core)["tet4"]].T
+    joined = (np.bincount(nodes.ravel())[nodes] > 1).any(axis=1)
+    place = np.flatnonzero(joined[kept])
+    assert len(place) and (kept[place] % 8 == place % 8).all()
+    assert len(kept) < len(joined)
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_others_fill_gaps_only(seed):
+    random = np.random.default_rng(seed)
+    joined = np.repeat(random.random(12) < 0.4, 8)[: 96 - seed % 8]
+    some = np.flatnonzero(random.random(len(joined)) < random.choice([0.05, 0.5]))
+    kept = filled(some, joined)
+    assert np.isin(some, kept).all() and (np.diff(kept) > 0).all()
+    place = np.flatnonzero(joined[kept])
+    assert (kept[place] % 8 == place % 8).all()
+    blocks = np.unique(some[joined[some]] // 8)
+    assert (np.unique(kept[place] // 8) == blocks).all()
+    assert len(kept) - len(place) - (~joined[some]).sum() < 8 * (1 + len(joined) // 16)
 
 
 def test_every_row_has_one_owner_who_keeps_it(sim, slices):
