@@ -59,7 +59,7 @@ benchmark: dev
 	$(BIN)/python tools/benchmark_history.py
 
 # What may happen to a run and to its input, in parts; see docs/results.md.
-PARTS := damage cases files kills small landslide faults-kill faults-EIO faults-ENOSPC
+PARTS := damage cases files kills ranks small landslide faults-kill faults-EIO faults-ENOSPC
 TORTURES := $(PARTS:%=torture-%)
 STATE = --state build/torture/$(@:torture-%=%).json
 .PHONY: $(TORTURES)
@@ -76,6 +76,9 @@ torture-files: build
 
 torture-kills: build
 	$(BIN)/python tools/torture/kills.py $(STATE)
+
+torture-ranks: build
+	$(BIN)/python tools/torture/ranks.py $(STATE)
 
 torture-small torture-landslide: build
 	$(BIN)/python tools/torture/soak.py $(@:torture-%=%) $(STATE)

@@ -36,6 +36,20 @@ sys.argv = ["cdem", "run", "model.yaml"]
 from cdem.cli import main
 main()
 """
+SLOW = """
+import sys, time
+from cdem.cli import main, run_commands
+from cdem.ranks import failures
+
+def write(folder):
+    time.sleep(3 * failures.PATIENCE)
+    (folder / "report.html").write_text("slow")
+
+failures.PATIENCE = 1.0
+run_commands.write_report = write
+sys.argv = ["cdem", "run", "model.yaml", "--threads", "1"]
+main()
+"""
 
 
 def wall(refresh=None, **how) -> Simulation:
@@ -208,6 +222,19 @@ def test_the_error_of_the_core_on_one_rank_is_told(wall_folder):
     assert "rank 1 of 2: Traceback" in errors
     assert errors.count("RuntimeError: no room for contacts") == 1
     assert took < END
+
+
+@needs_mpi
+def test_an_unstable_run_has_a_report_however_long_it_takes(wall_folder):
+    """The ranks that do not write it wait for it; else they would end the one that does."""
+    fast = WALL.replace("loose: {material: rock}", "loose: {material: rock, velocity: [0, 0, 1e5]}")
+    (wall_folder / "model.yaml").write_text(fast)
+    (wall_folder / "slow.py").write_text(SLOW)
+    status, _, errors, _ = ranks(2, "slow.py", cwd=wall_folder)
+    assert status == 3
+    assert errors.count("faster than the P wave of the rock") == 1
+    assert "rank 1" not in errors
+    assert (wall_folder / "model.results" / "report.html").exists()
 
 
 @needs_mpi

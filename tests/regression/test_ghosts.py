@@ -20,6 +20,9 @@ from cdem.ranks.shared_core import SharedCore
 
 MOTION = [0, 1, 2, 4, 5, 6]
 """Numbers of a row of motion, without pads."""
+AT_SAMPLES = "stored"
+"""Energy of intact pairs: of the last sample, or of a step since at which another one of its lane
+was broken, and ranks have other lanes."""
 
 
 class Look:
@@ -73,7 +76,9 @@ class Look:
         self.compare(f"{kind} at own nodes", rows[acts[rows]], acts.nonzero()[0])
         ghosts = ~self.kept.own[kind] & acts[rows]
         for name, info in self.infos.items():
-            if info["rows"] == kind and len(self.part[name]) and not any(info["refers_to"]):
+            if info["rows"] != kind or name.endswith(AT_SAMPLES):
+                continue
+            if len(self.part[name]) and not any(info["refers_to"]):
                 found = Table(info, self.part[name], len(rows)).rows()[ghosts]
                 whole = Table(info, self.whole[name], self.counts[kind]).rows()
                 self.compare(name, found, whole[rows[ghosts]])

@@ -126,7 +126,7 @@ def expected(name):
 def dealt_by(deal, seed):
     """Owners as `parts.divide` gives them, anew at each cut."""
 
-    def divide(core, mesh, count):
+    def divide(core, mesh, count, _):
         together = parts._units(core, mesh)
         random = np.random.default_rng([seed, core.scalars()["step"]])
         of_element = deal(int(together.max()) + 1, count, random)[together]

@@ -86,7 +86,7 @@ def run(
                 exchange=exchange,
             )
         told = _told(folder, exchange)
-        status = _run(simulation, told, stop, quiet=quiet, as_json=as_json)
+        status = _run(simulation, told, stop, exchange, quiet=quiet, as_json=as_json)
     if told:
         _tell_end(status, told, quiet=quiet, as_json=as_json)
     if status == "stopped":
@@ -141,7 +141,13 @@ def _but_for(summary: Path) -> str:
 
 
 def _run(
-    simulation: Simulation, folder: Path | None, stop: list[str], *, quiet: bool, as_json: bool
+    simulation: Simulation,
+    folder: Path | None,
+    stop: list[str],
+    exchange: Mpi | None,
+    *,
+    quiet: bool,
+    as_json: bool,
 ) -> str:
     """Run, and report in the folder, if any; returns how it ended."""
     from cdem.run.progress import watch
@@ -168,6 +174,8 @@ def _run(
         except UnstableError:
             if folder:
                 write_report(folder)  # the report shows the places
+            if exchange:
+                exchange.share_text("")  # all end together, however long the report takes
             raise
     if folder and not _is_reported(folder):
         from cdem.run.progress import busy

@@ -217,7 +217,10 @@ class RunState:
 
     @property
     def motion(self) -> NDArray[np.float64]:
-        """The core's rows of position and velocity, each and a pad; a view of shape (nodes, 8)."""
+        """The core's rows of position and velocity, each and a pad; a view of shape (nodes, 8).
+
+        Read-only where ranks share the model.
+        """
         return rows_of(self.core, "node.motion").numbers
 
     @property
