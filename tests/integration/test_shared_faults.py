@@ -163,6 +163,19 @@ def test_scripts_look_change_and_end(tmp_path):
     assert on_ranks(3, act) == [one] * 3
 
 
+def test_an_action_ends_the_stage_on_all_ranks_where_it_does_on_the_first():
+    """Clocks differ."""
+
+    def act(exchange):
+        simulation = wall()
+        simulation.every(1e-3, lambda sim: exchange.rank == (0 if sim.time > 2.5e-3 else 1))
+        return simulation.run(), simulation.step_count
+
+    first, second = on_ranks(2, act, timeout=END)
+    assert first == second
+    assert first[0] == "ended"
+
+
 def test_nodes_are_not_moved_by_hand():
     """Ranks would lose it, so numpy refuses; the message names the array's state."""
 

@@ -375,6 +375,8 @@ class Simulation(RunState):
         """Do all tasks that are due: follow, act, record, check; returns the stage's end, or None."""
         self._look_at_flow()
         ended = any([action.call(self) for action in self._actions])
+        if self._actions:  # they may look at a clock
+            ended = bool(self._agreed(ended))
         if stages.record_is_due(self, stage, outcome) or ended:
             self._log_departures()
             stages.look_for_rest(self, stage)
