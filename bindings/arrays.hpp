@@ -266,6 +266,13 @@ inline void restore_anew(Core& core, const Views& arrays, const Dict& scalars) {
   core.state.nodes.lumped.resize(0);
 }
 
+/// Free the arrays of a checkpoint, until others are restored in their place.
+inline void drop_state(Core& core) {
+  for (const ArrayEntry& one : array_entries(core))
+    if (is_of(one, "stored"))
+      std::visit([]<class T>(Column<T>* column) { Column<T>().swap(*column); }, one.column);
+}
+
 inline Dict scalars(Core& core) {
   Dict numbers;
   describe_scalars(

@@ -299,6 +299,7 @@ void bind_setup(nb::class_<Core>& core) {
       .def("set_initial_tractions", &set_tractions, "stress"_a, "bonded"_a)
       .def("restore", &restore)
       .def("restore_anew", &restore_anew)
+      .def("drop_state", &drop_state)
       .def("prepare",
            [](Core& c) {
              hold_taken_out(c.model, c.state);

@@ -229,7 +229,7 @@ __device__ inline std::int64_t sum_of_warp(std::int64_t digit) {
 /// Add a number of each item to the words of a sum: digit by digit in warps, which have a sum each,
 /// then these.
 template <class Kernel>
-__global__ void sum_on_gpu(Index count, Kernel kernel, const Flag* counted, std::int64_t* words) {
+__global__ void sum_on_gpu(Index count, Kernel kernel, std::int64_t* words) {
   __shared__ std::int64_t own[sum_threads / sum_warp][ExactSum::words];
   const int warp = threadIdx.x / sum_warp, lane = threadIdx.x % sum_warp;
   for (int k = lane; k < ExactSum::words; k += sum_warp) own[warp][k] = 0;
@@ -237,10 +237,7 @@ __global__ void sum_on_gpu(Index count, Kernel kernel, const Flag* counted, std:
   const std::int64_t step = std::int64_t(gridDim.x) * sum_threads;
   std::int64_t first = std::int64_t(blockIdx.x) * sum_threads + warp * sum_warp;
   for (; first < count; first += step) {
-    const Index item = Index(first + lane);
-    const Real number = first + lane < count ? kernel(One{item}) : 0.0;
-    const bool counts = first + lane < count && (!counted || counted[item]);
-    const NumberDigits digits(counts ? number : 0.0);
+    const NumberDigits digits(first + lane < count ? kernel(One{Index(first + lane)}) : 0.0);
     int k = most_of_warp(digits.below(ExactSum::words));
     for (; k >= 0; k = most_of_warp(digits.below(k))) {
       const std::int64_t sum = sum_of_warp(digits.at(k));
@@ -262,11 +259,15 @@ Real sum_of_words(Queue queue, const std::int64_t* words, Exchange* ranks);
 template <class Kernel>
 Real exact_sum(Queue queue, Index count, const Kernel& kernel, const Counted& counted) {
   if (count == 0 && !counted.ranks) return 0;
+  if (counted.own) {  // in two steps: a kernel that asked which count would need more registers
+    Real* const values = scratch<Real>(count);
+    for_each_item(queue, count, SetValue<Kernel>{kernel, counted.own, 0, values});
+    return exact_sum(queue, count, EachNumber<>{values}, Counted{nullptr, counted.ranks});
+  }
   std::int64_t* const words = zeroed_words(queue);
   const Index groups = std::min(sum_groups, count / sum_threads + (count % sum_threads > 0));
   if (groups > 0)
-    launch_groups(queue, groups, sum_threads, sum_on_gpu<Kernel>, count, kernel, counted.own,
-                  words);
+    launch_groups(queue, groups, sum_threads, sum_on_gpu<Kernel>, count, kernel, words);
   return sum_of_words(queue, words, counted.ranks);
 }
 

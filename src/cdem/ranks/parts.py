@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from cdem._core import Core
 
 Array = NDArray[np.float64]
-Indices = NDArray[np.int64]
+Indices = NDArray[np.integer]
 
 FACE_WORK, PAIR_WORK = 2.0, 1.5
 """Work of an exposed face, and of a listed pair, over the work of an element, about."""
@@ -65,8 +65,7 @@ class Mesh:
         count: Number of elements.
         face_element: Element behind each exterior face.
         is_alone: Whether all faces of an element are exterior ones.
-        edge_element: Element of each edge of an element.
-        edge_nodes: Ends of these edges, shape (edges, 2).
+        tables: Nodes of the elements of each shape, by its first element.
     """
 
     corner_element: Indices
@@ -74,32 +73,36 @@ class Mesh:
     count: int
     face_element: Indices
     is_alone: NDArray[np.bool_]
-    edge_element: Indices
-    edge_nodes: Indices
+    tables: list[tuple[str, int, Indices]]
 
     @classmethod
     def of(cls, core: Core) -> Mesh:
         """The mesh of a core."""
         arrays, first = core.model(), 0
-        elements, nodes, faces, edge_elements, edges = [], [], [], [], []
+        elements, faces, tables = [], [], []
         counts = {kind["name"]: kind["count"] for kind in core.describe_rows()}
         for shape, corners in NODES.items():
             count = counts[shape]
-            table = arrays[f"{shape}.nodes"].reshape(corners, -1)[:, :count].T.astype(np.int64)
-            of_shape = np.arange(first, first + count)
-            nodes.append(table.ravel())
-            elements.append(np.repeat(of_shape, corners))
+            table = arrays[f"{shape}.nodes"].reshape(corners, -1)[:, :count].T.copy()
+            tables.append((shape, first, table))
+            elements.append(np.repeat(np.arange(first, first + count, dtype=np.int32), corners))
             faces.append(np.full(count, FACES[shape]))
-            edges.append(table[:, EDGES[shape]].reshape(-1, 2))
-            edge_elements.append(np.repeat(of_shape, len(EDGES[shape])))
             first += count
-        face_element = arrays["face.element"].astype(np.int64)
+        face_element = arrays["face.element"]
         return cls(
-            corner_element=np.concatenate(elements), corner_node=np.concatenate(nodes),
-            count=first, face_element=face_element,
+            corner_element=np.concatenate(elements),
+            corner_node=np.concatenate([table.ravel() for _, _, table in tables]),
+            count=first, face_element=face_element, tables=tables,
             is_alone=np.bincount(face_element, minlength=first) == np.concatenate(faces),
-            edge_element=np.concatenate(edge_elements), edge_nodes=np.concatenate(edges),
         )  # fmt: skip
+
+    def edges(self, some: NDArray[np.bool_]) -> Indices:
+        """Ends of the edges of some elements, shape (edges, 2)."""
+        ends = [
+            table[some[first : first + len(table)]][:, EDGES[shape]].reshape(-1, 2)
+            for shape, first, table in self.tables
+        ]
+        return np.concatenate(ends)
 
     def lowest_element(self, nodes: int) -> Indices:
         """The first element at each node."""
@@ -236,12 +239,12 @@ class Fences:
     """Boxes that nodes must not leave, for ghosts to be all that are needed.
 
     Attributes:
-        of_nodes: Of the paths of nodes with their skins, rows of 8 as in the core.
-        nodes: The same as boxes of a search.
+        nodes: Of the paths of nodes with their skins.
+        size: Largest L of the faces at each node; 0 where there are none [m].
     """
 
-    of_nodes: Array
     nodes: Boxes
+    size: Array
 
     @classmethod
     def around(cls, core: Core, mesh: Mesh) -> Fences:
@@ -258,9 +261,15 @@ class Fences:
         low, high = np.minimum(position, then) - room, np.maximum(position, then) + room
         reach = np.full(len(size), REACH)
         reach[mesh.corner_node[~mesh.is_alone[mesh.corner_element]]] += DEPTH
-        fences = np.hstack([low, size[:, None], high, np.zeros((len(size), 1))])
-        fences[size == 0, :3], fences[size == 0, 4:7] = -np.inf, np.inf  # on no face: in no list
-        return cls(fences, Boxes(np.hstack([low, high]), reach * size + core.lift()))
+        return cls(Boxes(np.hstack([low, high]), reach * size + core.lift()), size)
+
+    def of_nodes(self, some: Indices) -> Array:
+        """Boxes of the paths of nodes with their skins, rows of 8 as in the core."""
+        sides, size = self.nodes.sides[some], self.size[some, None]
+        fences = np.hstack([sides[:, :3], size, sides[:, 3:], np.zeros((len(some), 1))])
+        inside = size[:, 0] == 0  # on no face: in no list
+        fences[inside, :3], fences[inside, 4:7] = -np.inf, np.inf
+        return fences
 
     def of_elements(self, mesh: Mesh) -> Boxes:
         """Boxes of elements."""
@@ -305,7 +314,7 @@ def needed(
     acting = boxes.near(boxes.some(found)) | _with_partners(core, mesh, found)
     if core.asks_area():  # the area of a contact depends on all that touch its faces
         return acting, boxes.near(boxes.some(acting)) | acting
-    edges = fences.of_edges(mesh.edge_nodes[acting[mesh.edge_element]])
+    edges = fences.of_edges(mesh.edges(acting))
     choosing = edges.some(edges.near(boxes.some(found)))
     return acting, boxes.near(boxes.some(found).and_others(choosing)) | acting
 

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from cdem._native import core as native
 from cdem.ranks.buffers import packed, unpacked
 from cdem.ranks.exchange import Exchange, Neighbour
-from cdem.ranks.kinds import PAIRS, Table
+from cdem.ranks.kinds import PAIRS, Table, flat_of
 from cdem.ranks.merge import own_rows, put_together
 from cdem.ranks.parts import Fences, Mesh, Parts, divide, needed, work_of
 from cdem.ranks.slices import Slice
@@ -126,7 +126,7 @@ class SharedCore:
         self._parts: Parts | None = None
         self._pace: NDArray[np.float64] | None = None
         self._busy = self._cut_seconds = 0.0
-        self._known: set[str] = set()
+        self._known: dict[str, NDArray[Any]] = {}
         self._rows: dict[str, NDArray[np.int64]] = {}
         self._counts = {kind["name"]: kind["count"] for kind in whole.describe_rows()}
         self.shared = 0
@@ -183,7 +183,7 @@ class SharedCore:
             if not len(array) and info["optional"]:
                 return array, info
             if self._gathers(name, array, info):
-                return _frozen(self._whole.array(name))
+                return _frozen((self._known[name], info))
         return _frozen(self.whole().array(name))
 
     def scalars(self) -> dict[str, Any]:
@@ -241,20 +241,20 @@ class SharedCore:
         return self._whole
 
     def _gathers(self, name: str, array: NDArray[Any], info: dict[str, Any]) -> bool:
-        """Bring one array of the whole up to date, if its rows have the numbers of the model."""
+        """Gather one array of the whole state, if its rows have the numbers of the model."""
         assert self._slice is not None
         kind, own = info["rows"], self._slice.own.get(info["rows"])
         if own is None or kind in DYNAMIC or info["layout"] == "starts" or any(info["refers_to"]):
             return False
-        whole = Table(info, self._whole.array(name)[0], self._counts[kind])
-        if name in self._known or not whole.is_used:
-            return name in self._known
+        if name in self._known:
+            return True
         if kind not in self._rows:
             rows = self._slice.keep[kind][own]
             self._rows[kind] = np.concatenate(self.exchange.gather_rows(rows))
         part = Table(info, array, len(own)).rows()[own]
-        whole.rows()[self._rows[kind]] = np.concatenate(self.exchange.gather_rows(part))
-        self._known.add(name)
+        rows = np.empty((self._counts[kind], info["numbers"]), array.dtype)
+        rows[self._rows[kind]] = np.concatenate(self.exchange.gather_rows(part))
+        self._known[name] = flat_of(info, rows)
         return True
 
     def _in_both(self, name: str) -> Callable[..., Any]:
@@ -282,7 +282,7 @@ class SharedCore:
 
     def _forget_whole(self) -> None:
         self._whole_is_new = self._is_prepared = False
-        self._known = set()
+        self._known = {}
 
     def _in_whole(self, name: str) -> Callable[..., Any]:
         act = getattr(self.whole(), name)
@@ -318,28 +318,36 @@ class SharedCore:
             rank = self.exchange.rank
             acting, found = needed(self._whole, self._mesh, parts, fences, rank)
             found[0] |= not found.any()  # of more ranks than blocks: no core can be empty
-            own = Slice(self._whole, np.flatnonzero(found), parts.of_element, parts.of_node, rank)
+            own = Slice(whole, np.flatnonzero(found), parts.of_element, parts.of_node, rank)
             far = ~acting[self._mesh.face_element[own.keep["faces"]]]
-            self._slice, self._part = own, self._part_of(own, parts, fences, far)
+            share = self._share_of(own, parts) | {
+                "fence": fences.of_nodes(own.keep["nodes"]).ravel(), "far": far.astype(np.int8),
+            }  # fmt: skip
+            del fences
+            self._slice, self._part = own, self._part_of(own, share)
+            self._whole_is_new = False
             self._rows = {}
             self.shared += 1
             self._cut_seconds = time.perf_counter() - begin
         return self._part
 
-    def _part_of(self, own: Slice, parts: Parts, fences: Fences, far: NDArray[np.bool_]) -> Core:
+    def _part_of(self, own: Slice, share: dict[str, Any]) -> Core:
+        """A core with the rows of a slice. The state of the whole is not needed any more."""
         whole, core = self._whole, native.Core()
         core.take_counts(own.counts())
         core.take_settings(whole)
         core.take_model(own.model())
-        share = self._share_of(own, parts, fences) | {"far": far.astype(np.int8)}
         core.take_share(self._waits, share)
-        motion = whole.fields()["node.motion"].reshape(-1, 8)[own.keep["nodes"], :3]
-        core.start(np.ascontiguousarray(motion).ravel())
-        core.restore(own.state(), whole.scalars())
+        state, scalars = own.state(), whole.scalars()
+        own.forget_whole()
+        whole.drop_state()
+        motion = state["node.motion"].reshape(-1, 8)
+        core.start(np.ascontiguousarray(motion[:, :3]).ravel())
+        core.restore(state, scalars)
         core.prepare()
         return core
 
-    def _share_of(self, own: Slice, parts: Parts, fences: Fences) -> dict[str, Any]:
+    def _share_of(self, own: Slice, parts: Parts) -> dict[str, Any]:
         """What a rank knows of its part, as `Core.take_share` has it."""
         model, nodes, faces = self._whole.model(), own.keep["nodes"], own.keep["faces"]
         block = model["node.block"]
@@ -351,11 +359,10 @@ class SharedCore:
             "tiles": _tiles(self._whole, own),
             "node": nodes.astype(np.int32), "face": faces.astype(np.int32),
             "block": block[nodes], "cut_block": number[block[nodes]], "cut_blocks": int(cut.sum()),
-            "fence": fences.of_nodes[nodes].ravel(),
             **self._link(nodes, parts.of_node),
         }  # fmt: skip
 
-    def _link(self, nodes: NDArray[np.int64], owner: NDArray[np.int64]) -> dict[str, Any]:
+    def _link(self, nodes: NDArray[np.int64], owner: NDArray[np.integer]) -> dict[str, Any]:
         """Agree with the other ranks on the nodes whose motion is sent."""
         rank, count = self.exchange.rank, self.exchange.count
         local = np.full(len(owner), -1, np.int32)
@@ -381,7 +388,7 @@ class SharedCore:
         return {"send": np.concatenate(send), "receive": np.concatenate(receive)}
 
 
-def _cut_blocks(block: NDArray[np.int32], owner: NDArray[np.int64]) -> NDArray[np.bool_]:
+def _cut_blocks(block: NDArray[np.int32], owner: NDArray[np.integer]) -> NDArray[np.bool_]:
     """Blocks whose nodes several ranks own."""
     count = int(block.max(initial=-1)) + 1
     least, most = np.full(count, owner.max(initial=0)), np.zeros(count, np.int64)

@@ -155,6 +155,10 @@ class Slice:
                 count += int((self.local[kind][row[row >= 0]] < 0).sum())
         return count
 
+    def forget_whole(self) -> None:
+        """Free what only `model` and `state` need."""
+        self.local = {}
+
     def _of(self, table: Table) -> NDArray[Any]:
         """The kept rows of an array."""
         if not table.is_used:

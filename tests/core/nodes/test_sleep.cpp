@@ -28,16 +28,24 @@ TEST_CASE("elements and nodes of which all are fixed sleep") {
   const Boxes all(false);
   CHECK(all.state.hex8.awake.size() == 0);
   const Boxes boxes(true);
-  const Index tile =
-      on_host(boxes.state.hex8.tiles.block_first)[1] * block_size;  // the last one: all awake
-  REQUIRE(tile < Boxes::count - block_size);
-  for (Index b = 0; b < Boxes::count; ++b) CHECK(lists(boxes.state.hex8.awake, b) == (b >= tile));
+  for (Index b = 0; b < Boxes::count; ++b)
+    CHECK(lists(boxes.state.hex8.awake, b) == (b >= Boxes::count - block_size));
   const Index last = 8 * (Boxes::count - 1);
   CHECK(on_host(boxes.state.nodes.sleeps)[0]);
   CHECK(on_host(boxes.state.nodes.sleeps)[last - 8]);
   CHECK(!on_host(boxes.state.nodes.sleeps)[last]);
   CHECK(lists(boxes.state.nodes.awake, last));
   CHECK(!lists(boxes.state.nodes.awake, 0));
+}
+
+TEST_CASE("elements that share nodes are awake with all of their tile") {
+  Boxes boxes(true);
+  const auto first = on_host(boxes.state.nodes.element_first);
+  for (std::size_t i = 0; i < first.size(); ++i) first[i] *= 2;  // as if each node had two
+  find_awake(boxes.model, boxes.state);
+  const Index tile = on_host(boxes.state.hex8.tiles.block_first)[1] * block_size;  // the last one
+  REQUIRE(tile < Boxes::count - block_size);
+  for (Index b = 0; b < Boxes::count; ++b) CHECK(lists(boxes.state.hex8.awake, b) == (b >= tile));
 }
 
 TEST_CASE("a fixed node that moves, or carries a load, is awake") {
