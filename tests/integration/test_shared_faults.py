@@ -8,6 +8,7 @@ import subprocess
 import time
 from functools import partial
 
+import numpy as np
 import pytest
 from ruamel.yaml import YAML
 from shared.cases import CUBE, WALL
@@ -211,14 +212,8 @@ def test_ghosts_that_are_due_without_a_step_are_told(monkeypatch):
     """No endless loop."""
     from cdem.ranks.parts import Fences
 
-    around = Fences.around
-
-    def nowhere(core, mesh):
-        fences = around(core, mesh)
-        fences.of_nodes[:] = 1e9
-        return fences
-
-    monkeypatch.setattr(Fences, "around", nowhere)
+    nowhere = partial(np.full, fill_value=1e9)
+    monkeypatch.setattr(Fences, "of_nodes", lambda _, some: nowhere((len(some), 8)))
     with pytest.raises(RuntimeError, match="ghosts are due at once at step 10"):
         on_ranks(2, lambda _: wall(refresh=10).run(), timeout=END)
 

@@ -186,13 +186,13 @@ def test_too_few_ghosts_are_noticed(which, monkeypatch):
 
 def test_elements_that_come_near_must_become_ghosts(monkeypatch):
     """With fences that nothing leaves, ghosts are those of the first step."""
-    around = Fences.around
+    of_nodes = Fences.of_nodes
 
-    def endless(core, mesh):
-        fences = around(core, mesh)
-        fences.of_nodes[:, :3], fences.of_nodes[:, 4:7] = -1e9, 1e9
-        return fences
+    def endless(fences, some):
+        rows = of_nodes(fences, some)
+        rows[:, :3], rows[:, 4:7] = -1e9, 1e9
+        return rows
 
     assert not is_noticed(2, meeting)
-    monkeypatch.setattr(Fences, "around", endless)
+    monkeypatch.setattr(Fences, "of_nodes", endless)
     assert is_noticed(2, meeting)
