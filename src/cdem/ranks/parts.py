@@ -23,7 +23,7 @@ FACE_WORK, PAIR_WORK = 2.0, 1.5
 ROOM = 0.1
 """Motion that a fence leaves to a node on each side, in parts of L; besides velocity and skin."""
 GROWTH = 1.5
-"""Growth of the skins of nodes that a fence leaves room for."""
+"""Growth of skins that a fence leaves room for, where they are wider than of usual faces."""
 SWEPT_STEPS = 400
 """A fence leaves room for the present velocity over so many steps."""
 REACH = 0.08
@@ -257,7 +257,9 @@ class Fences:
         steps = max(SWEPT_STEPS, 2 * core.rebuild_interval())
         then = position + steps * core.scalars()["dt"] * paths[:, :3]
         usual = np.median(length) if len(length) else 0.0
-        room = (ROOM * np.minimum(size, usual) + GROWTH * paths[:, 3])[:, None]
+        small = np.minimum(size, usual)
+        skin = np.maximum(native.widest_skin * small, GROWTH * paths[:, 3])
+        room = (ROOM * small + skin)[:, None]
         low, high = np.minimum(position, then) - room, np.maximum(position, then) + room
         reach = np.full(len(size), REACH)
         reach[mesh.corner_node[~mesh.is_alone[mesh.corner_element]]] += DEPTH
