@@ -62,7 +62,6 @@ inline void take_share(Core& core, nb::object exchange, const nb::dict& from) {
   };
   each("own", share.own);
   each("tiles", share.tiles);
-  copy(from["far"], share.far);
   copy(from["node"], share.node);
   copy(from["face"], share.face);
   copy(from["block"], share.block);

@@ -23,6 +23,8 @@ template void for_each_item(Queue, Index, const GroupBoxes&);
 template void for_each_item(Queue, Index, const GroupGroups&);
 template void for_each_item(Queue, Index, const FindMortonCodes&);
 template void for_each_item(Queue, Index, const FlagNear&);
+template void for_each_item(Queue, Index, const FlagOwnPatches&);
+template void for_each_item(Queue, Index, const MarkFarPatches&);
 template void list_items(Queue, Index, const ListPatchPairs&, Column<PatchPair>&);
 template void keep_items(Queue, const MayMeet&, Column<PatchPair>&);
 template void for_each_item(Queue, Index, const SortByOther&);

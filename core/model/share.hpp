@@ -16,7 +16,6 @@ struct Share {
   Exchange* exchange = nullptr;                             // null: the model is whole
   std::map<std::string, Column<Flag>, std::less<>> own;     // [row] by kind of rows
   std::map<std::string, Column<Index>, std::less<>> tiles;  // [eight elements] tile, by set
-  Column<Flag> far;                                         // [face] see Patch
   Column<Index> node, face;      // [node], [face] their numbers in the whole model
   Column<Index> block;           // [node] its block there
   Column<Index> cut_block;       // [node] number of its block among those that several ranks own

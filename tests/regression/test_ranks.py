@@ -161,9 +161,9 @@ def fewer(which):
     def needed(core, mesh, dealt, fences, rank):
         at_own = (dealt.of_element == rank) | mesh.at_nodes(dealt.of_node == rank)
         if which == "no others":
-            return at_own, at_own
-        acting, _ = parts.needed(core, mesh, dealt, fences, rank)
-        return acting, acting
+            return at_own
+        boxes = fences.of_elements(mesh)
+        return boxes.near(boxes.some(at_own)) | at_own
 
     return needed
 

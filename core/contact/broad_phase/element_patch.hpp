@@ -60,7 +60,7 @@ struct Patch {
   Index block;
   bool movable;
   bool whole;  // are all faces of the element exposed?
-  bool far;    // of a rank: is it of an element that touches no own one?
+  bool far;    // of a rank: reaches no own one before the next rebuild
   Box box;     // of the whole motion
 
   /// Place of a node among the vertices, or how many there are.

@@ -20,7 +20,6 @@ struct ElementSurface {
   const Index *exposed_face, *block;  // [exposed], [face]
   const Flag* movable;                // [face]
   const Real *area, *reach;           // [face]  [m2], [m]
-  const Flag* far;                    // [face] see Patch; null: none
   const Index *target, *edge_first;   // [slot], [exposed + 1]
   const Real *springs, *edges;        // rows of ContactState
 
@@ -176,6 +175,7 @@ struct MakePatches {
   CDEM_HD void add_faces(Patch& p) const {
     p.vertex_count = p.edge_count = 0;
     p.displacement = {0, 0, 0};
+    p.far = false;
     p.deepest = p.length = p.reach = 0;
     p.box = Box::nothing();
     for (Index i = 0; i < p.face_count; ++i) {
@@ -186,7 +186,6 @@ struct MakePatches {
       p.reach = max_of(of.reach[e.face], p.reach);
       p.block = e.block;
       p.movable = e.movable;
-      p.far = of.far && of.far[e.face];
       p.box.include(e.box);
       for (Index k = 0; k < e.shape.count(); ++k) {
         add_vertex(p, i, k, of.faces.vertex(e.face, k));

@@ -7,6 +7,7 @@
 #include "core/base/primitives.hpp"
 #include "core/contact/broad_phase/edge_edge_pairs.hpp"
 #include "core/contact/broad_phase/exposed_patches.hpp"
+#include "core/contact/broad_phase/near_boxes.hpp"
 #include "core/contact/broad_phase/patch_pairs.hpp"
 #include "core/contact/broad_phase/predicted_motion.hpp"
 #include "core/contact/broad_phase/vertex_face_pairs.hpp"
@@ -26,7 +27,6 @@ ElementSurface element_surface(const Model& m, const State& s) {
           .movable = m.face_movable.data(),
           .area = m.face_area.data(),
           .reach = m.face_reach.data(),
-          .far = s.share.far.size() > 0 ? s.share.far.data() : nullptr,
           .target = s.springs.target.data(),
           .edge_first = s.edges.first.data(),
           .springs = s.springs.state.data(),
@@ -57,6 +57,22 @@ void list_in_batches(Queue q, Index rows, Index at_once, Column<Item>& all, cons
   }
 }
 
+/// Of a rank: mark the patches that reach no own one before the next rebuild.
+void mark_far(const State& s, const Column<Box>& boxes, Column<Patch>& patches) {
+  if (!s.share.exchange) return;
+  const Queue q;
+  const Index count = Index(patches.size());
+  Column<Real> reach;
+  Column<Flag> near;
+  reach.renew(count);
+  near.renew(count);
+  set_all(q, count, reach.data(), Real(0));
+  for_each_item(q, count,
+                FlagOwnPatches{patches.data(), s.share.counted("exposed").own, near.data()});
+  flag_near(boxes, reach, near);
+  for_each_item(q, count, MarkFarPatches{near.data(), patches.data()});
+}
+
 /// Pairs of patches, and their parts that may touch.
 void find_patch_pairs(const Model& m, const State& s, PairSearch& search) {
   const Queue q;
@@ -64,6 +80,7 @@ void find_patch_pairs(const Model& m, const State& s, PairSearch& search) {
   Column<Box> boxes;
   boxes.renew(count);
   for_each_item(q, count, CopyBoxes{search.patches.data(), boxes.data()});
+  mark_far(s, boxes, search.patches);
   BoxTreeColumns tree;
   tree.make(q, boxes);
   const PairContext f = pair_context(m, s, search);

@@ -6,6 +6,20 @@
 
 namespace cdem {
 
+/// Which patches are own, of a rank.
+struct FlagOwnPatches {
+  const Patch* patches;
+  const Flag* own;  // [exposed]
+  Flag* flags;
+  CDEM_HD void operator()(One i) const { flags[i.i] = own[patches[i.i].face[0]]; }
+};
+/// Patches that are not near an own one are far.
+struct MarkFarPatches {
+  const Flag* near;
+  Patch* patches;
+  CDEM_HD void operator()(One i) const { patches[i.i].far = near[i.i] == 0; }
+};
+
 /// Call act(pair) for the patches whose boxes overlap with that of a movable one: the later ones,
 /// and the ones that are not movable.
 struct ListPatchPairs {

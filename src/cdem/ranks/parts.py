@@ -299,26 +299,21 @@ def _lengths(length: Array, nodes: NDArray[np.integer], count: int) -> Array:
     return largest
 
 
-def needed(
-    core: Core, mesh: Mesh, parts: Parts, fences: Fences, rank: int
-) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+def needed(core: Core, mesh: Mesh, parts: Parts, fences: Fences, rank: int) -> NDArray[np.bool_]:
     """Elements that a rank needs: its own and ghosts.
 
     The forces on own nodes come from elements there, from bonds, and from contacts of faces near
     them. Whom the vertices and edges of such a face touch there depends on the faces near these.
-
-    Returns:
-        Own elements and those that act on own nodes; all that are needed.
     """
     own = parts.of_node == rank
     found = (parts.of_element == rank) | mesh.at_nodes(own | _bolted(core, own))
     boxes = fences.of_elements(mesh)
     acting = boxes.near(boxes.some(found)) | _with_partners(core, mesh, found)
     if core.asks_area():  # the area of a contact depends on all that touch its faces
-        return acting, boxes.near(boxes.some(acting)) | acting
+        return boxes.near(boxes.some(acting)) | acting
     edges = fences.of_edges(mesh.edges(acting))
     choosing = edges.some(edges.near(boxes.some(found)))
-    return acting, boxes.near(boxes.some(found).and_others(choosing)) | acting
+    return boxes.near(boxes.some(found).and_others(choosing)) | acting
 
 
 def _bolted(core: Core, some: NDArray[np.bool_]) -> NDArray[np.bool_]:

@@ -316,13 +316,11 @@ class SharedCore:
             self._parts, self._pace, self._busy = parts, None, 0.0
             fences = Fences.around(whole, self._mesh)
             rank = self.exchange.rank
-            acting, found = needed(self._whole, self._mesh, parts, fences, rank)
+            found = needed(whole, self._mesh, parts, fences, rank)
             found[0] |= not found.any()  # of more ranks than blocks: no core can be empty
             own = Slice(whole, np.flatnonzero(found), parts.of_element, parts.of_node, rank)
-            far = ~acting[self._mesh.face_element[own.keep["faces"]]]
-            share = self._share_of(own, parts) | {
-                "fence": fences.of_nodes(own.keep["nodes"]).ravel(), "far": far.astype(np.int8),
-            }  # fmt: skip
+            share = self._share_of(own, parts)
+            share["fence"] = fences.of_nodes(own.keep["nodes"]).ravel()
             del fences
             self._slice, self._part = own, self._part_of(own, share)
             self._whole_is_new = False
