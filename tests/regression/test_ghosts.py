@@ -151,6 +151,7 @@ def test_ghosts_are_like_their_owners(name, count, monkeypatch):
 
     expected = digest_of_results(SCENES[name]())
     monkeypatch.setattr(parts, "ROOM", 0.003)
+    monkeypatch.setattr(parts, "SKIN", 0)
     monkeypatch.setattr(parts, "SWEPT_STEPS", 200)
     monkeypatch.setattr(SharedCore, "_put_together", looked_at)
     assert on_ranks(count, lambda _: digest_of_results(SCENES[name]())) == [expected] * count

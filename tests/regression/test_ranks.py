@@ -193,6 +193,7 @@ def test_elements_that_come_near_must_become_ghosts(monkeypatch):
         rows[:, :3], rows[:, 4:7] = -1e9, 1e9
         return rows
 
+    monkeypatch.setattr(parts, "SKIN", 0)
     assert not is_noticed(2, meeting)
     monkeypatch.setattr(Fences, "of_nodes", endless)
     assert is_noticed(2, meeting)

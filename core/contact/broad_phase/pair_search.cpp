@@ -68,7 +68,10 @@ void mark_far(const State& s, const Column<Box>& boxes, Column<Patch>& patches) 
   near.renew(count);
   set_all(q, count, reach.data(), Real(0));
   for_each_item(q, count,
-                FlagOwnPatches{patches.data(), s.share.counted("exposed").own, near.data()});
+                FlagOwnPatches{.patches = patches.data(),
+                               .own_face = s.share.counted("exposed").own,
+                               .own_node = s.share.counted("nodes").own,
+                               .flags = near.data()});
   flag_near(boxes, reach, near);
   for_each_item(q, count, MarkFarPatches{near.data(), patches.data()});
 }

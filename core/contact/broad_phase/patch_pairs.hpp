@@ -6,12 +6,17 @@
 
 namespace cdem {
 
-/// Which patches are own, of a rank.
+/// Which patches have own faces, or own nodes, of a rank: contacts of a face act on its nodes.
 struct FlagOwnPatches {
   const Patch* patches;
-  const Flag* own;  // [exposed]
+  const Flag *own_face, *own_node;  // [exposed], [node]
   Flag* flags;
-  CDEM_HD void operator()(One i) const { flags[i.i] = own[patches[i.i].face[0]]; }
+  CDEM_HD void operator()(One i) const {
+    const Patch& patch = patches[i.i];
+    bool own = own_face[patch.face[0]] != 0;
+    for (Index v = 0; v < patch.vertex_count; ++v) own = own || own_node[patch.vertex[v]] != 0;
+    flags[i.i] = own;
+  }
 };
 /// Patches that are not near an own one are far.
 struct MarkFarPatches {

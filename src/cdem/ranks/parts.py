@@ -22,8 +22,10 @@ FACE_WORK, PAIR_WORK = 2.0, 1.5
 """Work of an exposed face, and of a listed pair, over the work of an element, about."""
 ROOM = 0.1
 """Motion that a fence leaves to a node on each side, in parts of L; besides velocity and skin."""
+SKIN = native.widest_skin
+"""Skin that a fence leaves room for, in parts of L."""
 GROWTH = 1.5
-"""Growth of skins that a fence leaves room for, where they are wider than of usual faces."""
+"""Growth of wider skins, which large faces have."""
 SWEPT_STEPS = 400
 """A fence leaves room for the present velocity over so many steps."""
 REACH = 0.08
@@ -258,7 +260,7 @@ class Fences:
         then = position + steps * core.scalars()["dt"] * paths[:, :3]
         usual = np.median(length) if len(length) else 0.0
         small = np.minimum(size, usual)
-        skin = np.maximum(native.widest_skin * small, GROWTH * paths[:, 3])
+        skin = np.maximum(SKIN * small, GROWTH * paths[:, 3])
         room = (ROOM * small + skin)[:, None]
         low, high = np.minimum(position, then) - room, np.maximum(position, then) + room
         reach = np.full(len(size), REACH)
