@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 sys.path.insert(0, str(Path(__file__).parent))
+from golden_scenes import SCENES as GOLDEN
 from golden_scenes import digest_of_results, thrown
 from shared.ranks import on_ranks
 
@@ -20,6 +21,8 @@ from cdem.ranks.shared_core import SharedCore
 
 MOTION = [0, 1, 2, 4, 5, 6]
 """Numbers of a row of motion, without pads."""
+PATH = [0, 1, 2, 4, 5, 6, 7]
+"""Numbers of a predicted path; owners alone ask whether a node leaves it."""
 AT_SAMPLES = "stored"
 """Energy of intact pairs: of the last sample, or of a step since at which another one of its lane
 was broken, and ranks have other lanes."""
@@ -161,3 +164,20 @@ def test_ghosts_are_like_their_owners(name, count, monkeypatch):
     bonded = {"rubble": [], "breaking": ["triangles.bond"], "cubes": ["quads.bond"]}[name]
     assert all(seen[ghosts] > 50 for ghosts in ["motion", "spring.state", *bonded])
     assert seen["edge contacts"] > 50 or name == "cubes"
+
+
+def test_paths_of_ghosts_are_those_of_their_owners():
+    """A rank lacks elements at the outer ghosts of a block: it cannot predict them by itself."""
+
+    def look():
+        core = GOLDEN["elastic"](1).core
+        part, whole = core._part.fields(), core.whole().fields()
+        kept, place = core._slice, np.full(core._counts["nodes"], -1)
+        place[whole["outer.predicted_nodes"]] = np.arange(len(whole["outer.predicted_nodes"]))
+        ghosts = ~kept.own["nodes"][part["outer.predicted_nodes"]]
+        nodes = kept.keep["nodes"][part["outer.predicted_nodes"][ghosts]]
+        found = part["outer.predicted"].reshape(-1, 8)[ghosts][:, PATH]
+        assert len(found) > 20 and (place[nodes] >= 0).all()
+        assert (found == whole["outer.predicted"].reshape(-1, 8)[place[nodes]][:, PATH]).all()
+
+    on_ranks(3, lambda _: look())
