@@ -59,7 +59,7 @@ FAULTS = [
         "src/cdem/ranks/parts.py",
         "return boxes.near(boxes.some(found).and_others(choosing)) | acting",
         "return acting",
-        GOLDEN,
+        "tests/regression/test_ghosts.py",
     ),
     Mutant(
         "old whole",
@@ -67,7 +67,7 @@ FAULTS = [
         "src/cdem/ranks/shared_core.py",
         "self._whole_is_new = self._is_prepared = False\n        self._known",
         "self._is_prepared = True\n        self._known",
-        GOLDEN,
+        "tests/integration/test_shared_runs.py",
     ),
     Mutant(
         "elements out of their blocks",
