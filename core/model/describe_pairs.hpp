@@ -1,7 +1,6 @@
 // describe_pairs.hpp - the arrays of bonded pairs: part of describe_state.hpp.
 #pragma once
 
-#include "core/interfaces/laws.hpp"
 #include "core/model/model.hpp"
 #include "core/model/rebuilds.hpp"
 #include "core/model/row_kinds.hpp"
@@ -49,7 +48,7 @@ void describe_set(const char* rows, const PairSet& set, PairState& p, Stored&& s
           .unit = "of the law",
           .meaning = "state of the law at the bond points",
           .rows = conforms(set) ? rows : "overlap_points",
-          .numbers = p.history.size() > 0 ? InterfaceLaws::most_state * set.points : 0,
+          .numbers = p.history_width * set.points,
           .layout = Layout::columns},
          p.history);
   of_pair("broken_tension", "1", "springs broken in tension", p.broken_tension);

@@ -40,7 +40,8 @@ void size(const Model& m, const ElementSet& e, ElementState& es) {
 
 void init_histories(const Model& m, const PairSet& p, PairState& s) {
   if (!m.interface_traits.has_state) return;
-  s.history.resize(InterfaceLaws::most_state * std::size_t(p.points) * p.point_stride);
+  s.history_width = InterfaceLaws::most_state;
+  s.history.resize(s.history_width * std::size_t(p.points) * p.point_stride);
   const BeginHistory begin(m, p, s);
   const auto first = on_host(p.point_first);
   for (Index i = 0; i < p.count; ++i)

@@ -106,6 +106,7 @@ struct PairState {
   Column<Real> stored, fracture, friction;
   Column<Real> dashpot, damping_work;  // see BondDashpots; empty where a stage does not damp so
   Column<Real> history;                // [variable * points + point][pair], of the pair's law
+  Index history_width = 0;             // variables of a point; 0 where no law has state
   Column<Index> awake;                 // blocks of pairs, see nodes/sleep.hpp
 };
 

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cdem._native import core as native
-from cdem.mesh.element_shapes import NODES
+from cdem.mesh.element_shapes import FACES, NODES
 from cdem.rows import rows_of
 
 if TYPE_CHECKING:
@@ -34,25 +34,15 @@ smaller L: depth of a new contact, indentation and tolerance."""
 DEPTH = 0.15
 """Half of the depth at which a vertex may be behind the face that it touches. It may then be beyond
 the element, if the block goes on there."""
-FACES = {"tet4": 4, "pyramid5": 5, "wedge6": 5, "hex8": 6}
 EDGES = {
-    "tet4": [(0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)],
-    "pyramid5": [(0, 1), (1, 2), (2, 3), (3, 0), (0, 4), (1, 4), (2, 4), (3, 4)],
-    "wedge6": [(0, 1), (1, 2), (2, 0), (3, 4), (4, 5), (5, 3), (0, 3), (1, 4), (2, 5)],
-    "hex8": [
-        (0, 1),
-        (1, 2),
-        (2, 3),
-        (3, 0),
-        (4, 5),
-        (5, 6),
-        (6, 7),
-        (7, 4),
-        (0, 4),
-        (1, 5),
-        (2, 6),
-        (3, 7),
-    ],
+    shape: sorted(
+        {
+            tuple(sorted(side))
+            for face in faces
+            for side in zip(face, face[1:] + face[:1], strict=True)
+        }
+    )
+    for shape, faces in FACES.items()
 }
 """Edges of an element, by its corners."""
 
@@ -88,7 +78,7 @@ class Mesh:
             table = arrays[f"{shape}.nodes"].reshape(corners, -1)[:, :count].T.copy()
             tables.append((shape, first, table))
             elements.append(np.repeat(np.arange(first, first + count, dtype=np.int32), corners))
-            faces.append(np.full(count, FACES[shape]))
+            faces.append(np.full(count, len(FACES[shape])))
             first += count
         face_element = arrays["face.element"]
         return cls(

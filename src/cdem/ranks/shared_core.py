@@ -175,13 +175,11 @@ class SharedCore:
         return Fields(self)
 
     def array(self, name: str) -> tuple[NDArray[Any], dict[str, Any]]:
-        """An array and its description, see `Core.array`; of a part where it is empty."""
+        """An array and its description, see `Core.array`."""
         if self._part is not None and not self._whole_is_new:
             array, info = self._part.array(name)
             if info["origin"] == "given":
                 return _frozen(self._whole.array(name))
-            if not len(array) and info["optional"]:
-                return array, info
             if self._gathers(name, array, info):
                 return _frozen((self._known[name], info))
         return _frozen(self.whole().array(name))
@@ -248,11 +246,19 @@ class SharedCore:
             return False
         if name in self._known:
             return True
+        sizes = [len(array), info["numbers"]]  # a rank may have no rows, and so no numbers of them
+        length, numbers = np.max(self.exchange.gather_rows(np.array(sizes)), axis=0)
+        if not length:
+            self._known[name] = array.copy()
+            return True
         if kind not in self._rows:
             rows = self._slice.keep[kind][own]
             self._rows[kind] = np.concatenate(self.exchange.gather_rows(rows))
-        part = Table(info, array, len(own)).rows()[own]
-        rows = np.empty((self._counts[kind], info["numbers"]), array.dtype)
+        info["numbers"] = int(numbers)
+        part = np.empty((0, numbers), array.dtype)
+        if len(array):
+            part = Table(info, array, len(own)).rows()[own]
+        rows = np.empty((self._counts[kind], numbers), array.dtype)
         rows[self._rows[kind]] = np.concatenate(self.exchange.gather_rows(part))
         self._known[name] = flat_of(info, rows)
         return True
