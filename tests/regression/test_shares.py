@@ -10,9 +10,8 @@ import pytest
 
 sys.path.insert(0, str(Path(__file__).parent))
 from golden_scenes import FIXED, SCENES, SOFT, WEIGHT, box, case, finish
-from shared.shares import core_of, differences, set_rules, slices_of
+from shared.shares import core_of, differences, lost, merge, set_rules, slices_of
 
-from cdem.ranks.merge import merge
 from cdem.run.restored import wrong_array
 
 PARTS = 3
@@ -39,7 +38,7 @@ def test_slices_make_the_whole_again_and_run(name):
         whole = merge(sim.core, slices, [kept.state() for kept in slices])
         assert differences(whole, sim.core.fields()) == []
         for kept in slices:
-            assert kept.lost() == {}
+            assert lost(sim.core, kept) == {}
             core = core_of(sim, kept)
             assert wrong_array(core) == ""
             assert differences(core.model(), kept.model()) == []

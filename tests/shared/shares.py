@@ -5,6 +5,8 @@ import numpy as np
 from cdem._native import core as native
 from cdem.model.curves import hand_over
 from cdem.model.options import options_of
+from cdem.ranks.kinds import BY_LABEL, LABELS, NOT_KEPT, tables_of
+from cdem.ranks.merge import own_rows, put_together
 from cdem.ranks.slices import Slice
 from cdem.run import stages
 
@@ -158,3 +160,38 @@ def differences(found, expected):
         for name, array in expected.items()
         if found[name].dtype != array.dtype or found[name].tobytes() != array.tobytes()
     ]
+
+
+def merge(core, slices, states, old_firsts=None):
+    """The whole stored arrays from those of all ranks, see `own_rows`."""
+    old = old_firsts or [None] * len(slices)
+    return put_together(core, [own_rows(*one) for one in zip(slices, states, old, strict=True)])
+
+
+def lost(core, kept):
+    """How many references of own rows to rows that are not kept there are, by name of the array.
+
+    None where the elements around the own ones suffice.
+    """
+    given = tables_of(core, core.model(), "given")
+    tables = [*given, *tables_of(core, core.fields(), "stored")]
+    used = [table for table in tables if table.is_used and table.name not in LABELS]
+    return {table.name: count for table in used if (count := lost_of(core, kept, table))}
+
+
+def lost_of(core, kept, table):
+    """The same of one array."""
+    own = kept.own[table.kind]
+    rows = kept.keep[table.kind][own]
+    if table.is_list:
+        length = kept.lengths[table.name][own]
+        if table.name == BY_LABEL:  # others have the lists of labels that are not kept
+            length = length[core.fields()["node.bonded_node"][rows] == rows]
+        return int(np.diff(table.flat)[rows].sum() - length.sum())
+    count = 0
+    for number, kind in enumerate(table.kinds()):
+        if kind and kind != NOT_KEPT:
+            index = table.rows()[rows, number]
+            row = np.where(index < 0, ~index, index) if table.info["opposite"] else index
+            count += int((kept.local[kind][row[row >= 0]] < 0).sum())
+    return count

@@ -65,24 +65,6 @@ class OwnRows:
     vertex_faces: Rows = field(default_factory=lambda: np.zeros((0, 3), np.int64))
 
 
-def merge(
-    core: Core,
-    slices: Sequence[Slice],
-    states: Sequence[Arrays],
-    old_firsts: Sequence[NDArray[Any] | None] | None = None,
-) -> dict[str, NDArray[Any]]:
-    """The whole stored arrays from those of all ranks.
-
-    Args:
-        core: The whole model.
-        slices: What each rank keeps of it.
-        states: Stored arrays of each rank.
-        old_firsts: "edge.old_first" of `Core.rebuilt` of each rank, see `own_rows`.
-    """
-    old = old_firsts or [None] * len(slices)
-    return put_together(core, [own_rows(*one) for one in zip(slices, states, old, strict=True)])
-
-
 def own_rows(kept: Slice, state: Arrays, old_first: NDArray[Any] | None = None) -> OwnRows:
     """What a rank sends.
 

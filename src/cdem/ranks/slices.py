@@ -127,34 +127,6 @@ class Slice:
             arrays["outer.edge_first"] = arrays["outer.edge_first"][:0]
         return arrays
 
-    def lost(self) -> dict[str, int]:
-        """How many references of own rows to rows that are not kept there are, by name of the array.
-
-        None where the elements around the own ones suffice.
-        """
-        found = {}
-        given = tables_of(self._core, self._core.model(), "given")
-        for table in [*given, *tables_of(self._core, self._core.fields(), "stored")]:
-            if table.is_used and table.name not in LABELS and (count := self._lost(table)):
-                found[table.name] = count
-        return found
-
-    def _lost(self, table: Table) -> int:
-        """The same of one array."""
-        rows = self.keep[table.kind][self.own[table.kind]]
-        if table.is_list:
-            kept = self.lengths[table.name][self.own[table.kind]]
-            if table.name == BY_LABEL:  # others have the lists of labels that are not kept
-                kept = kept[self._core.fields()["node.bonded_node"][rows] == rows]
-            return int(np.diff(table.flat)[rows].sum() - kept.sum())
-        count = 0
-        for number, kind in enumerate(table.kinds()):
-            if kind and kind != NOT_KEPT:
-                index = table.rows()[rows, number]
-                row = np.where(index < 0, ~index, index) if table.info["opposite"] else index
-                count += int((self.local[kind][row[row >= 0]] < 0).sum())
-        return count
-
     def forget_whole(self) -> None:
         """Free what only `model` and `state` need."""
         self.local = {}

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from scenes import simulate
-from shared.shares import core_of, counts_of, differences, slices_of, with_ghosts
+from shared.shares import core_of, counts_of, differences, lost, slices_of, with_ghosts
 
 from cdem.ranks import slices as module
 from cdem.ranks.slices import Slice, filled
@@ -254,7 +254,7 @@ def test_wet_faces_keep_their_pairs(bolted):
 
 
 def test_references_that_own_rows_lose_are_counted(sim, slices):
-    assert all(kept.lost() == {} for kept in slices)
+    assert all(lost(sim.core, kept) == {} for kept in slices)
     along = rows_of(sim.core, "node.motion").position[:, 0] > 10
     counts = counts_of(sim.core)
     right = along[rows_of(sim.core, "tet4.nodes").numbers].all(axis=1)
@@ -262,6 +262,6 @@ def test_references_that_own_rows_lose_are_counted(sim, slices):
     own = part == 1
     assert own.sum() < len(with_ghosts(sim.core, own, 1)) < len(with_ghosts(sim.core, own, 2))
     node_part = along.astype(int)
-    lost = Slice(sim.core, np.flatnonzero(own), part, node_part, 1).lost()
-    assert {"corner.first", "search.across", "outer.slot_first"} <= set(lost)
-    assert min(lost.values()) > 0 and not {"face.nodes", "edge.nodes", "tet4.nodes"} & set(lost)
+    found = lost(sim.core, Slice(sim.core, np.flatnonzero(own), part, node_part, 1))
+    assert {"corner.first", "search.across", "outer.slot_first"} <= set(found)
+    assert min(found.values()) > 0 and not {"face.nodes", "edge.nodes", "tet4.nodes"} & set(found)
