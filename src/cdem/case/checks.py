@@ -133,8 +133,13 @@ def _water(case: CaseParts) -> Iterator[Problem]:
         if field.interface is not None and field.interface not in named:
             yield ("water", "fields", i, "interface"), _no("interface", field.interface, named)
     gx, gy, gz = case.loads.gravity
-    if gx or gy or not gz < 0:
-        yield ("loads", "gravity"), f"must point along -z in a case with water, got {[gx, gy, gz]}"
+    given = all(f.formula is not None or f.table is not None for f in case.water.fields)
+    if not gz < 0 or ((gx or gy) and not (given and case.water.reservoir is None)):
+        yield (
+            ("loads", "gravity"),
+            f"must point along -z in a case with water, got {[gx, gy, gz]}; only water by formula or "
+            "table may go with a horizontal part",
+        )
 
 
 def _mesh_file(case: CaseParts, folder: Path) -> Iterator[Problem]:

@@ -48,7 +48,7 @@ def show(
     """
     from cdem.seismic.tables import record_lines
 
-    records = _records(file, settings or [])
+    records = records_of(file, settings or [])
     for name, one in records.items():
         print("\n".join(record_lines(name, one.steps())))
     if picture is not None:
@@ -59,7 +59,7 @@ def show(
             print_paths(draw_record(path, name, one.steps()[0][1], one.steps()[-1][1]))
 
 
-def _records(file: Path, settings: list[str]) -> dict[str, Record]:
+def records_of(file: Path, settings: list[str]) -> dict[str, Record]:
     """Records of a case, or of one file."""
     from cdem.case.record_file import load_record
 

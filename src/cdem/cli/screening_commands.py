@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import json
 import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from cdem.cli import screening_options as options
 from cdem.cli.options import Force, Overwrite, print_paths, stop_on_signal
 from cdem.errors import CaseError, CdemError
 
@@ -20,7 +23,11 @@ if TYPE_CHECKING:
     from cdem.screening.bodies import Limits
     from cdem.screening.confirm import Confirmed
     from cdem.screening.fos_map import FosMap
+    from cdem.screening.loads import Loads
     from cdem.screening.planes import JointPlane
+    from cdem.screening.probability import Floats, Probability
+    from cdem.screening.shaking import Earthquake, Shaken
+    from cdem.screening.uncertain import Uncertain
     from cdem.terrain.heights import Grid
 
 
@@ -136,62 +143,190 @@ def screen(
     workers: Annotated[
         int | None, typer.Option(min=1, help="Local processes for them; default all cores.")
     ] = None,
+    water: options.Water = None,
+    crack: options.Crack = None,
+    kh: options.HorizontalShaking = 0.0,
+    kv: options.VerticalShaking = 0.0,
+    pga: options.Pga = None,
+    magnitude: options.Magnitude = None,
+    record: options.RecordFile = None,
+    uncertain: options.UncertainFile = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
 ) -> None:
     """Map the factor of safety over terrain: wedges and planes of joints, by closed forms.
 
     With --confirm, writes a case for each of the worst bodies and lists both factors.
     """
-    from cdem.screening import products
     from cdem.screening.bodies import Limits
     from cdem.screening.ground import read_ground
     from cdem.screening.planes import read_planes
 
     smallest, largest = (_number("--volume", word, "m3") for word in volume)
     limits = Limits(smallest, largest, GRAVITY * _number("--density", density, "kg/m3"))
+    quake = options.quake_of(pga, magnitude, record)
     planes, notes = read_planes(sets)
     grid, system, more = read_ground(ground, cell)
-    found = _screen(grid, planes, limits, stride)
+    loads, words = options.loads_of(water, crack, kh, kv, grid)
+    chances, doubts = options.uncertain_of(uncertain, planes, loads)
+    notes += [*more, *words, *options.quake_notes(quake), *doubts]
+    columns = None if chances is None else chances.draw()
+    found = _screen(grid, planes, limits, stride, loads, quake is not None)
     folder = output or Path(f"{ground.stem}.screen")
     folder.mkdir(parents=True, exist_ok=True)
-    written = _write_maps(found, folder, system)
-    if not as_json:
-        print(products.text(found, planes, notes + more, system))
-    both = _confirm(found, confirm, folder, system, workers)
-    if both:
-        products.write_bodies(found, folder / products.BODIES, system, [c.computed for c in both])
-    if as_json:
-        print(json.dumps(products.facts(found) | {"confirmed": [vars(c) for c in both]}, indent=2))
-    else:
-        print_paths(written)
-        if both:
-            print("factors of safety, closed form and computed (cdem critical):")
-            print(*(one.text() for one in both), sep="\n")
+    out = _Results(found, planes, folder, system, as_json)
+    out.begin(notes)
+    if quake is not None:
+        out.shake(quake)
+    if chances is not None and columns is not None:
+        out.sample(chances, columns, stride, workers)
+    out.write()
+    out.confirm(confirm, workers)
+    out.end()
 
 
-def _screen(grid: Grid, planes: list[JointPlane], limits: Limits, stride: int) -> FosMap:
+def _screen(
+    grid: Grid,
+    planes: list[JointPlane],
+    limits: Limits,
+    stride: int,
+    loads: Loads,
+    shaken: bool,
+) -> FosMap:
     """Search the bodies, with a line of progress."""
-    from cdem.run.progress import line
     from cdem.screening import fos_map
     from cdem.screening.bodies import Ground
 
+    with _progress() as report:
+        return fos_map.screen(
+            Ground(grid), planes, limits, stride, report, loads=loads, yields=shaken
+        )
+
+
+@contextmanager
+def _progress() -> Iterator[Callable[[str, float], None] | None]:
+    """A line of progress on a terminal."""
+    from cdem.run.progress import line
+
     tty = sys.stderr.isatty()
     with line(silent=not tty, tty=tty) as show:
-        report = None if show is None else lambda words, part: show("", words, part)
-        return fos_map.screen(Ground(grid), planes, limits, stride, report)
+        yield None if show is None else lambda words, part: show("", words, part)
 
 
-def _write_maps(found: FosMap, folder: Path, system: str | None) -> list[Path]:
-    """Write maps, bodies and picture; a lack of matplotlib is only a message."""
-    from cdem.screening import products
+class _Results:
+    """Results of a screening on their way to files and to the screen.
 
-    written = products.write_maps(found, folder, system)
-    written.append(products.write_bodies(found, folder / products.BODIES, system))
-    try:
-        return [*written, products.draw(found, folder / "fos.png")]
-    except CdemError as error:
-        print(f"no picture: {error}", file=sys.stderr)
-        return written
+    Args:
+        found: Maps and bodies.
+        planes: The sets.
+        folder: Folder of the files.
+        system: Map projection, or None.
+        as_json: Whether JSON is printed at the end in place of text.
+    """
+
+    def __init__(
+        self,
+        found: FosMap,
+        planes: list[JointPlane],
+        folder: Path,
+        system: str | None,
+        as_json: bool,
+    ) -> None:
+        self.found, self.planes, self.folder = found, planes, folder
+        self.system, self.as_json = system, as_json
+        self.shaken: Shaken | None = None
+        self.chance: Probability | None = None
+        self.confirmed: list[Confirmed] = []
+
+    def begin(self, notes: list[str]) -> None:
+        """Print what was found."""
+        from cdem.screening import report
+
+        self._print(report.text(self.found, self.planes, notes, self.system))
+
+    def shake(self, quake: Earthquake) -> None:
+        """Compute and print yield accelerations and displacements."""
+        from cdem.screening import report
+        from cdem.screening.shaking import shake
+
+        self.shaken = shake(self.found, quake)
+        self._print(report.shaken_text(self.shaken))
+
+    def sample(
+        self, uncertain: Uncertain, columns: dict[str, Floats], stride: int, workers: int | None
+    ) -> None:
+        """Compute and print the probability of failure."""
+        from cdem._instruction_sets import cores
+        from cdem.screening import report
+        from cdem.screening.probability import evaluate
+
+        how = {"stride": stride, "workers": workers or cores()}
+        with _progress() as show:
+            self.chance = evaluate(
+                self.found, self.planes, uncertain, columns, report=show, **how
+            )
+        self._print(report.chance_text(self.chance))
+
+    def write(self) -> None:
+        """Write maps, bodies, tables and pictures; a lack of matplotlib is only a message."""
+        from cdem.screening import chance_files, products
+
+        found, folder = self.found, self.folder
+        maps = products.maps_of(found, self.shaken)
+        if self.chance is not None:
+            maps.append(chance_files.map_of(self.chance))
+        paths = products.write_maps(maps, found.ground, folder, self.system)
+        paths.append(self._write_bodies())
+        if self.chance is not None:
+            paths.append(chance_files.write_samples(self.chance, folder / "samples.csv"))
+        try:
+            paths.append(products.draw(found, folder / "fos.png"))
+            if self.shaken is not None:
+                paths.append(products.draw_slip(found, self.shaken, folder / "newmark.png"))
+            if self.chance is not None:
+                paths += chance_files.draw_chance(found, self.chance, folder)
+        except CdemError as error:
+            print(f"no picture: {error}", file=sys.stderr)
+        if not self.as_json:
+            print_paths(paths)
+
+    def confirm(self, count: int, workers: int | None) -> None:
+        """Compute the worst bodies, and add them to the list of bodies."""
+        self.confirmed = _confirm(self.found, count, self.folder, self.system, workers)
+        if self.confirmed:
+            self._write_bodies()
+            self._print("factors of safety, closed form and computed (cdem critical):")
+            for one in self.confirmed:
+                self._print(one.text())
+
+    def end(self) -> None:
+        """Print JSON, if it is asked for."""
+        from cdem.screening import report
+
+        if not self.as_json:
+            return
+        facts = report.facts(self.found)
+        if self.shaken is not None:
+            facts["earthquake"] = report.shaken_facts(self.shaken)
+        if self.chance is not None:
+            facts["probability"] = report.chance_facts(self.chance)
+        facts["confirmed"] = [report.confirmed_facts(one) for one in self.confirmed]
+        print(json.dumps(facts, indent=2))
+
+    def _write_bodies(self) -> Path:
+        from cdem.screening import products
+
+        return products.write_bodies(
+            self.found,
+            self.folder / products.BODIES,
+            self.system,
+            [one.computed for one in self.confirmed],
+            self.shaken,
+            self.chance,
+        )
+
+    def _print(self, text: str) -> None:
+        if not self.as_json:
+            print(text)
 
 
 def _confirm(

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from cdem.screening.batches import Batch
+from cdem.screening.loads import Loads
 from cdem.screening.planes import JointPlane
-from cdem.screening.sliding import Sliding
+from cdem.screening.sliding import KINDS, Kind, Sliding
 from cdem.terrain.heights import Grid, extra
 
 Floats = NDArray[np.float64]
@@ -33,11 +36,14 @@ class Body:
 
     Attributes:
         planes: One or two planes that bound it below.
-        sliding: Its mode of sliding.
+        sliding: Its mode of sliding under its weight alone.
         point: Point where its line of sliding daylights [m].
         volume: Volume [m3].
+        weight: Weight [N].
         areas: Areas of its planes [m2].
+        heads: Mean height of the water table above each plane, for a share of 1 [m].
         factor: Factor of safety [1].
+        kind: Mode of sliding under all loads.
         corner: Row and column of its window in the map.
         cells: Mask of its cells in the window.
     """
@@ -46,8 +52,11 @@ class Body:
     sliding: Sliding
     point: Floats
     volume: float
+    weight: float
     areas: tuple[float, ...]
+    heads: tuple[float, ...]
     factor: float
+    kind: Kind
     corner: tuple[int, int]
     cells: Bools = field(repr=False)
 
@@ -55,7 +64,7 @@ class Body:
     def name(self) -> str:
         """Name from its planes; a plane on which it slides alone comes first."""
         names = [plane.name for plane in self.planes]
-        return "+".join(reversed(names) if self.sliding.kind == "second" else names)
+        return "+".join(reversed(names) if self.kind == "second" else names)
 
     @property
     def window(self) -> tuple[slice, slice]:
@@ -115,12 +124,24 @@ class Ground:
         return np.array([self.x[j], self.y[i], self.grid.values[i, j]])
 
     def body(
-        self, planes: tuple[JointPlane, ...], sliding: Sliding, at: tuple[int, int], limits: Limits
+        self,
+        planes: tuple[JointPlane, ...],
+        sliding: Sliding,
+        at: tuple[int, int],
+        limits: Limits,
+        loads: Loads | None = None,
     ) -> Body | None:
         """The body whose line of sliding daylights at a cell.
 
         It is the connected part of the ground above all planes from the cell on. The window
         grows until the body lies inside or is too large.
+
+        Args:
+            planes: One or two planes.
+            sliding: How a body slides on them under its weight.
+            at: Row and column of the cell.
+            limits: Limits of bodies.
+            loads: Water and shaking; none by default.
 
         Returns:
             The body; None if it reaches the edge of the map or unknown ground, is too small or too
@@ -136,17 +157,20 @@ class Ground:
             return None
         if not self._rests(planes, sliding, point, window, np.where(cells, t, 0.0)):
             return None
-        areas = self._areas(planes, cells, beds, window)
-        weight = limits.unit_weight * volume
-        held = sum(
-            plane.cohesion * area
-            for plane, area, normal in zip(planes, areas, sliding.normal, strict=False)
-            if normal > 0
-        )
-        factor = sliding.factor(weight, held)
+        shares = self._shares(planes, cells, beds)
+        areas = self._areas(planes, shares, cells, window)
+        loads, weight = loads or Loads(), limits.unit_weight * volume
+        heights = loads.heads(window, beds.max(axis=0), t)[cells]
+        heads = tuple(((shares @ heights) / np.maximum(shares.sum(axis=1), TOUCHES)).tolist())
+        alone = Batch(planes, sliding, np.array([weight]), np.array([areas]), np.array([heads]))
+        factor, kind = (values[0] for values in alone.factors(loads))
         box = _box(cells)
         corner = (window[0].start + box[0].start, window[1].start + box[1].start)
-        return Body(planes, sliding, point, volume, areas, factor, corner, cells[box].copy())
+        mask = cells[box].copy()
+        name = KINDS[int(kind)]
+        return Body(
+            planes, sliding, point, volume, weight, areas, heads, float(factor), name, corner, mask
+        )
 
     def _whole(
         self, planes: tuple[JointPlane, ...], point: Floats, at: tuple[int, int], largest: float
@@ -211,24 +235,28 @@ class Ground:
         first, second = (float(height_of(plane, point, x, y)) for plane in planes)
         return first >= second if sliding.kind == "first" else second >= first
 
+    def _shares(self, planes: tuple[JointPlane, ...], cells: Bools, beds: Floats) -> Floats:
+        """Share of each plane in the cells of a body, shape (planes, cells of the body)."""
+        if len(planes) == 1:
+            return np.ones((1, int(cells.sum())))
+        # cells on the intersection line of both planes are divided between them
+        normals = np.array([plane.normal for plane in planes])
+        apart = beds[0][cells] - beds[1][cells]
+        slope = np.diff(normals[:, :2] / normals[:, 2:], axis=0)[0]
+        across = float(np.abs(slope) @ self.grid.step)
+        share = np.clip(0.5 + apart / across, 0, 1)
+        return np.stack([share, 1 - share])
+
     def _areas(
         self,
         planes: tuple[JointPlane, ...],
+        shares: Floats,
         cells: Bools,
-        beds: Floats,
         window: tuple[slice, slice],
     ) -> tuple[float, ...]:
         """Area of each plane under a body [m2]."""
         normals = np.array([plane.normal for plane in planes])
-        share = np.ones((1, int(cells.sum())))
-        if len(planes) == 2:
-            # cells on the intersection line of both planes are divided between them
-            apart = beds[0][cells] - beds[1][cells]
-            slope = np.diff(normals[:, :2] / normals[:, 2:], axis=0)[0]
-            across = float(np.abs(slope) @ self.grid.step)
-            share = np.clip(0.5 + apart / across, 0, 1)
-            share = np.stack([share, 1 - share])
-        plan = share.sum(axis=1) * self.cell_area
+        plan = shares.sum(axis=1) * self.cell_area
         areas = plan / normals[:, 2]
         steep = np.array([plane.dip > COUNTED for plane in planes])
         if steep.any():
@@ -238,6 +266,19 @@ class Ground:
             found = np.linalg.lstsq(normals[steep, :2].T, rest, rcond=None)[0]
             areas[steep] = np.maximum(found, 0.0)
         return tuple(areas.tolist())
+
+
+def batches(bodies: Sequence[Body]) -> list[tuple[NDArray[np.int64], Batch]]:
+    """Bodies by their planes: indices in the list, and the bodies together."""
+    numbers: dict[tuple[str, ...], list[int]] = {}
+    for number, body in enumerate(bodies):
+        numbers.setdefault(tuple(plane.name for plane in body.planes), []).append(number)
+    out = []
+    for some in numbers.values():
+        group = [bodies[k] for k in some]
+        arrays = [np.array([getattr(b, of) for b in group]) for of in ("weight", "areas", "heads")]
+        out.append((np.array(some), Batch(group[0].planes, group[0].sliding, *arrays)))
+    return out
 
 
 def _on_edges(cells: Bools) -> tuple[bool, bool, bool, bool]:

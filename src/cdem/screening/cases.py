@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from cdem.errors import MeshError
 from cdem.screening.bodies import Body, Ground, height_of
 from cdem.screening.fos_map import FosMap
+from cdem.screening.loads import UNIT_WATER, Loads
 from cdem.screening.products import outline
 from cdem.terrain import write
 from cdem.terrain.heights import extra
@@ -158,13 +159,46 @@ def write_case(
     solid, planes = body_mesh(body, found.ground)
     path = folder / f"body{number}.yaml"
     write(solid, path.with_suffix(".msh"))
+    if found.loads.is_wet:
+        _write_water(solid, body, found, folder / f"body{number}-water.csv")
     density = found.limits.unit_weight / GRAVITY
-    write_text(path, _case_text(body, number, density, planes, system))
+    write_text(path, _case_text(body, number, density, planes, system, found.loads))
     return path
 
 
+def _write_water(solid: Solid, body: Body, found: FosMap, path: Path) -> None:
+    """Write the pressure at the points of the mesh on the planes, and the same below them.
+
+    A table must span a volume.
+    """
+    of_body = solid.tet_group == solid.groups.index(BODY)
+    used = np.intersect1d(solid.tets[of_body], solid.tets[~of_body])
+    points = solid.points[used]
+    xy, bed = points[:, :2], body.bed(points[:, 0], points[:, 1])
+    thickness = np.maximum(found.ground.grid(xy) - bed, 0.0)
+    loads = found.loads
+    heads = loads.share * loads.heads_at(found.ground.grid, xy, bed, thickness)
+    lines = ["x, y, z, pressure"]
+    for shift in (0.0, -1.0):
+        for (x, y, z), head in zip(points.tolist(), heads.tolist(), strict=True):
+            lines.append(f"{x!r}, {y!r}, {z + shift!r}, {UNIT_WATER * head:.6g}")
+    write_text(path, "\n".join(lines) + "\n")
+
+
+def _gravity(body: Body, loads: Loads) -> str:
+    """Gravity with the shaking in it, as in a case."""
+    across = (GRAVITY * loads.kh * body.sliding.heading).tolist()
+    parts = [*across, -GRAVITY * (1 - loads.kv)]
+    return "[" + ", ".join(f"{part:.9g}" for part in parts) + "]"
+
+
 def _case_text(
-    body: Body, number: int, density: float, planes: list[int], system: str | None
+    body: Body,
+    number: int,
+    density: float,
+    planes: list[int],
+    system: str | None,
+    loads: Loads,
 ) -> str:
     name = f"body{number}"
     held = "friction_angle: 75, cohesion: 1 GPa, tensile_strength: 1 GPa"
@@ -172,7 +206,8 @@ def _case_text(
     beds = [(f"bed{k + 1}", body.planes[k]) for k in planes]
     lines = [
         f"# Body {number} of cdem screen: {body.name}, {body.volume:.0f} m3, F = {body.factor:.3f} by",
-        f"# closed form. To compute it: cdem critical {name}.yaml --factor --criterion far={FAR}",
+        f"# closed form: {loads.text()}.",
+        f"# To compute it: cdem critical {name}.yaml --factor --criterion far={FAR}",
         "cdem: 2",
         f"title: Body {number} of a screening",
         *([] if system is None else [f"crs: {json.dumps(system)}"]),
@@ -189,7 +224,13 @@ def _case_text(
         f"  default: {{law: residual, {held}}}",
         "  pairs:",
         *(f"    - {{name: {bed}, between: [{BODY}, {bed}], {held}}}" for bed, _ in beds),
-        "loads: {gravity: [0, 0, -9.81]}",
+        *([] if not loads.is_wet else ["water:", "  fields:"]),
+        *(
+            f"    - {{interface: {bed}, table: {name}-water.csv, wet: always}}"
+            for bed, _ in beds
+            if loads.is_wet
+        ),
+        f"loads: {{gravity: {_gravity(body, loads)}}}",
         "stages:",
         "  - {name: settle, mode: static}",
         "  - name: decide",

@@ -77,6 +77,9 @@ def confirm(
     refused: dict[int, str] = {}
     density = found.limits.unit_weight / GRAVITY
     for number, body in enumerate(found.bodies[:count], 1):
+        if not 0 < body.factor < np.inf:
+            refused[number] = "it lifts off, whatever its strength"
+            continue
         try:
             path = write_case(body, number, found, folder, system)
         except MeshError as error:

@@ -1,4 +1,4 @@
-"""Output of a screening: maps as GeoTIFF, bodies as a GeoPackage, a picture, and a report as text."""
+"""Output of a screening: maps as GeoTIFF, bodies as a GeoPackage, pictures."""
 
 from __future__ import annotations
 
@@ -10,27 +10,22 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from cdem.joints.survey import plane_text
 from cdem.output.figures import pyplot
 from cdem.screening.bodies import Body, Ground
 from cdem.screening.fos_map import MODES, FosMap
-from cdem.screening.planes import JointPlane
+from cdem.screening.probability import Probability
+from cdem.screening.shaking import Shaken
 from cdem.terrain.heights import extra
-from cdem.units import coordinates
 
 Floats = NDArray[np.float64]
 
-WORDS = {
-    "both": "slides on both planes",
-    "first": "slides on one of two planes",
-    "second": "slides on one of two planes",
-    "plane": "slides on a single plane",
-}
 BODIES = "bodies.gpkg"
 SHOWN = 10
 """Most bodies in the report."""
 LEVELS = (0.6, 0.8, 1.0, 1.2, 1.5, 2.0, 3.0)
 """Classes of the factor of safety in the picture."""
+SLIPS = (0.001, 0.01, 0.05, 0.1, 0.3, 1.0, 3.0)
+"""Classes of the permanent displacement in the picture [m]."""
 
 
 def outline(body: Body, ground: Ground) -> Any:
@@ -49,26 +44,49 @@ def outline(body: Body, ground: Ground) -> Any:
     return max(parts[shapely.get_type_id(parts) == 3], key=lambda part: part.area)
 
 
-def write_maps(found: FosMap, folder: Path, system: str | None) -> list[Path]:
-    """Write the maps as GeoTIFF; returns their paths.
+Map = tuple[str, NDArray, str, str]
+"""Name of a file without its ending, values, meaning, unit."""
+
+
+def maps_of(found: FosMap, shaken: Shaken | None = None) -> list[Map]:
+    """The maps of a screening, and of an earthquake."""
+    plane = found.profiles.factor
+    maps: list[Map] = [
+        ("fos", found.factor, "least factor of safety of bodies", "1"),
+        ("fos_volume", found.volume, "volume of that body", "m3"),
+        (
+            "fos_mode",
+            found.mode,
+            "1: wedge on both planes, 2: on one of them, 3: one plane, 4: lifts off",
+            "1",
+        ),
+        ("fos_plane", plane, "plane failure per metre of width, free sides", "1"),
+    ]
+    if shaken is not None:
+        maps += [
+            ("fos_yield", shaken.yields, "least yield acceleration of bodies", "g"),
+            ("fos_newmark", shaken.slip, "largest permanent displacement of bodies", "m"),
+            ("fos_plane_yield", shaken.plane_yields, "yield acceleration of profiles", "g"),
+            ("fos_plane_newmark", shaken.plane_slip, "permanent displacement of profiles", "m"),
+        ]
+    return maps
+
+
+def write_maps(maps: Sequence[Map], ground: Ground, folder: Path, system: str | None) -> list[Path]:
+    """Write maps as GeoTIFF; returns their paths.
 
     Args:
-        found: The maps.
+        maps: The maps.
+        ground: Their ground.
         folder: Folder to write to.
         system: Map projection, EPSG code or WKT; None for none.
     """
     rasterio = extra("rasterio")
-    grid = found.ground.grid
+    grid = ground.grid
     (dx, dy), rows = grid.step, grid.values.shape[0]
     place = rasterio.transform.from_origin(
         grid.west - dx / 2, grid.south + (rows - 0.5) * dy, dx, dy
     )
-    maps: list[tuple[str, NDArray, str, str]] = [
-        ("fos", found.factor, "least factor of safety of bodies", "1"),
-        ("fos_volume", found.volume, "volume of that body", "m3"),
-        ("fos_mode", found.mode, "1: wedge on both planes, 2: on one of them, 3: one plane", "1"),
-        ("fos_plane", found.profiles.factor, "plane failure per metre of width, free sides", "1"),
-    ]
     paths = []
     for name, values, words, unit in maps:
         whole = values.dtype == np.uint8
@@ -93,7 +111,12 @@ def write_maps(found: FosMap, folder: Path, system: str | None) -> list[Path]:
 
 
 def write_bodies(
-    found: FosMap, path: Path, system: str | None, confirmed: list[float] | None = None
+    found: FosMap,
+    path: Path,
+    system: str | None,
+    confirmed: list[float] | None = None,
+    shaken: Shaken | None = None,
+    chance: Probability | None = None,
 ) -> Path:
     """Write the outlines of the listed bodies as a GeoPackage; returns its path.
 
@@ -102,6 +125,8 @@ def write_bodies(
         path: The file.
         system: Map projection, EPSG code or WKT; None for none.
         confirmed: Factor of safety by `cdem critical` of the first bodies, nan for none.
+        shaken: The earthquake.
+        chance: The probability of failure.
     """
     raw, shapely = extra("pyogrio.raw"), extra("shapely")
     bodies = found.bodies
@@ -110,7 +135,7 @@ def write_bodies(
     columns: dict[str, NDArray] = {
         "number": np.arange(1, len(bodies) + 1),
         "planes": np.array([body.name for body in bodies], dtype=object),
-        "mode": np.array([MODES[body.sliding.kind] for body in bodies], np.int32),
+        "mode": np.array([MODES[body.kind] for body in bodies], np.int32),
         "fos": np.array([body.factor for body in bodies]),
         "fos_critical": by_run,
         "volume_m3": np.array([body.volume for body in bodies]),
@@ -120,6 +145,11 @@ def write_bodies(
         "y": np.array([body.point[1] for body in bodies]),
         "z": np.array([body.point[2] for body in bodies]),
     }
+    if shaken is not None:
+        columns |= {"yield_g": shaken.listed_yields, "newmark_m": shaken.listed_slips}
+    if chance is not None:
+        names = ("probability", "mean_fos", "reliability")
+        columns |= dict(zip(names, chance.listed.T.copy(), strict=True))
     path.unlink(missing_ok=True)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # a missing map projection is reported elsewhere
@@ -142,35 +172,81 @@ def draw(found: FosMap, path: Path) -> Path:
     Raises:
         CdemError: matplotlib is not installed.
     """
+    maps = [("bodies between joints", found.factor)]
+    if found.profiles.count:
+        maps.append(("plane failure of profiles, sides assumed free", found.profiles.factor))
+    style = {"levels": LEVELS, "colors": "RdYlGn", "label": "least factor of safety"}
+    return draw_maps(found, maps, path, **style)
+
+
+def draw_slip(found: FosMap, shaken: Shaken, path: Path) -> Path:
+    """Draw permanent displacements of bodies, and of profiles.
+
+    Raises:
+        CdemError: matplotlib is not installed.
+    """
+    maps = [("bodies between joints", shaken.slip)]
+    if found.profiles.count:
+        maps.append(("plane failure of profiles, sides assumed free", shaken.plane_slip))
+    style = {"levels": SLIPS, "colors": "YlOrRd", "label": "permanent displacement [m]"}
+    return draw_maps(found, maps, path, **style)
+
+
+def draw_maps(
+    found: FosMap,
+    maps: Sequence[tuple[str, Floats]],
+    path: Path,
+    *,
+    levels: Sequence[float],
+    colors: str,
+    label: str,
+) -> Path:
+    """Draw maps over a hillshade side by side, the first with the outlines of the worst bodies.
+
+    Args:
+        found: Ground and bodies.
+        maps: Title and values of each map, shape (rows, columns).
+        path: The PNG.
+        levels: Limits of the classes.
+        colors: Name of the colours in matplotlib.
+        label: Label of the colours.
+
+    Raises:
+        CdemError: matplotlib is not installed.
+    """
     plt = pyplot()
-    ground, profiles = found.ground, found.profiles
+    ground = found.ground
     rows, columns = ground.grid.values.shape
     height, width = rows * ground.grid.step[1], columns * ground.grid.step[0]
-    panels = 2 if profiles.count else 1
-    shape = (panels, 1) if width > 1.5 * height else (1, panels)
+    shape = (len(maps), 1) if width > 1.5 * height else (1, len(maps))
     each = (min(6.0, 6.0 * width / height) + 0.9, min(6.0, 6.0 * height / width) + 0.9)
     size = (each[0] * shape[1] + 1.2, each[1] * shape[0])
     figure, axes = plt.subplots(*shape, figsize=size, squeeze=False, layout="constrained")
-    titles = ["bodies between joints", "plane failure of profiles, sides assumed free"]
-    maps = (found.factor, profiles.factor)
-    for panel, values, title in zip(axes.ravel(), maps, titles, strict=False):
-        shown = _draw_map(panel, ground, values, title)
-    figure.colorbar(shown, ax=axes, shrink=0.75, label="least factor of safety", extend="both")
-    from matplotlib.patheffects import withStroke
-
-    for number, body in enumerate(found.bodies[:SHOWN], 1):
-        polygon = outline(body, ground)
-        axes[0, 0].plot(*np.array(polygon.exterior.coords).T, color="black", lw=0.9)
-        style = {"fontsize": 9, "fontweight": "bold", "ha": "center", "va": "center"}
-        around = [withStroke(linewidth=2, foreground="white")]
-        place = polygon.representative_point()
-        axes[0, 0].text(place.x, place.y, str(number), path_effects=around, **style)
+    for panel, (title, values) in zip(axes.ravel(), maps, strict=True):
+        shown = _draw_map(panel, ground, values, title, levels, colors)
+    figure.colorbar(shown, ax=axes, shrink=0.75, label=label)
+    _draw_outlines(axes[0, 0], found)
     figure.savefig(path, dpi=110)
     plt.close(figure)
     return path
 
 
-def _draw_map(axes: Any, ground: Ground, values: Floats, title: str) -> Any:
+def _draw_outlines(axes: Any, found: FosMap) -> None:
+    """Outlines and numbers of the worst bodies."""
+    from matplotlib.patheffects import withStroke
+
+    for number, body in enumerate(found.bodies[:SHOWN], 1):
+        polygon = outline(body, found.ground)
+        axes.plot(*np.array(polygon.exterior.coords).T, color="black", lw=0.9)
+        style = {"fontsize": 9, "fontweight": "bold", "ha": "center", "va": "center"}
+        around = [withStroke(linewidth=2, foreground="white")]
+        place = polygon.representative_point()
+        axes.text(place.x, place.y, str(number), path_effects=around, **style)
+
+
+def _draw_map(
+    axes: Any, ground: Ground, values: Floats, title: str, levels: Sequence[float], name: str
+) -> Any:
     from matplotlib import colormaps
     from matplotlib.colors import BoundaryNorm
 
@@ -180,73 +256,12 @@ def _draw_map(axes: Any, ground: Ground, values: Floats, title: str) -> Any:
     shade = ground.normal @ light / np.linalg.norm(ground.normal, axis=-1) / np.linalg.norm(light)
     style = {"origin": "lower", "extent": extent, "interpolation": "nearest"}
     axes.imshow(np.clip(shade, 0, 1), cmap="gray", vmin=-0.1, vmax=1.1, **style)
-    colors = colormaps["RdYlGn"]
-    norm = BoundaryNorm(LEVELS, colors.N, extend="both")
+    colors = colormaps[name]
+    extend = "neither" if levels[0] == 0 else "both"
+    norm = BoundaryNorm(levels, colors.N, extend=extend)
     shown = axes.imshow(values, cmap=colors, norm=norm, alpha=0.75, **style)
     axes.set(xlabel="x, east [m]", ylabel="y, north [m]", aspect="equal")
     axes.ticklabel_format(style="plain", useOffset=False)
     axes.tick_params(labelsize=8)
     axes.set_title(title, fontsize=10)
     return shown
-
-
-def text(
-    found: FosMap, planes: Sequence[JointPlane], notes: Sequence[str], system: str | None
-) -> str:
-    """The results as text."""
-    limits, grid = found.limits, found.ground.grid
-    rows, columns = grid.values.shape
-    lines = [f"note: {note}" for note in notes]
-    if system is None:
-        lines.append("note: the ground has no map projection, so the maps have none")
-    lines.append(
-        f"{rows} x {columns} cells of {grid.step[0]:g} m; volumes from {limits.smallest:g} to "
-        f"{limits.largest:g} m3; {limits.unit_weight / 1e3:.1f} kN/m3, dry"
-    )
-    for plane in planes:
-        lines.append(
-            f"  {plane.name}: {plane_text(plane.dip, plane.dip_direction)}, friction "
-            f"{plane.friction:.1f} deg, cohesion {plane.cohesion / 1e3:g} kPa, persistence "
-            f"{plane.persistence:g}"
-        )
-    lines.append(
-        f"{found.count:,} bodies at {found.tried:,} points; they cover "
-        f"{100 * np.isfinite(found.factor).mean():.1f} % of the map; {found.profiles.count:,} profiles "
-        "of plane failure"
-    )
-    if found.count and found.at_limit > 0.5 * found.count:
-        share = 100 * found.at_limit / found.count
-        lines.append(
-            f"note: {share:.0f} % of the bodies are near the largest volume, which limits "
-            f"the result"
-        )
-    if found.bodies:
-        lines.append("  no.     factor  volume [m3]  planes, mode, and point where they daylight")
-    for number, body in enumerate(found.bodies[:SHOWN], 1):
-        lines.append(
-            f"  {number:3}  {body.factor:9.3f}  {body.volume:11,.0f}  {body.name}, "
-            f"{WORDS[body.sliding.kind]}, ({coordinates(body.point.round(1))})"
-        )
-    left = len(found.bodies) - SHOWN
-    return "\n".join([*lines, f"  ... and {left} more in bodies.gpkg"] if left > 0 else lines)
-
-
-def facts(found: FosMap) -> dict[str, Any]:
-    """The results, ready for JSON."""
-    return {
-        "bodies_found": found.count,
-        "points": found.tried,
-        "covered": float(np.isfinite(found.factor).mean()),
-        "profiles": found.profiles.count,
-        "bodies": [
-            {
-                "planes": body.name,
-                "mode": MODES[body.sliding.kind],
-                "fos": body.factor,
-                "volume": body.volume,
-                "areas": list(body.areas),
-                "point": body.point.tolist(),
-            }
-            for body in found.bodies
-        ],
-    }

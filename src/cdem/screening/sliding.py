@@ -1,4 +1,4 @@
-"""Mode of sliding of a body on one or two planes, and its factor of safety in closed form."""
+"""Modes of sliding of bodies on one or two planes under any force, and their factors of safety."""
 
 from __future__ import annotations
 
@@ -11,81 +11,127 @@ from numpy.typing import NDArray
 from cdem.screening.planes import JointPlane
 
 Floats = NDArray[np.float64]
-Kind = Literal["both", "first", "second", "plane"]
+Kind = Literal["both", "first", "second", "plane", "lifts"]
 
+KINDS: tuple[Kind, ...] = ("both", "first", "second", "plane", "lifts")
+"""On both planes of a pair, on the first or second alone, on a single plane, on none."""
+BOTH, FIRST, SECOND, PLANE, LIFTS = range(5)
 DOWN = np.array([0.0, 0.0, -1.0])
 LEAST_FALL = 1e-6
 """A line of sliding with a smaller downward component does not slide."""
+LEAVES = 1e-9
+"""A direction leaves a plane if its component along the normal is larger [1]."""
 
 
 @dataclass(frozen=True)
 class Sliding:
-    """The mode of sliding of a body, and its resistance; all per weight.
+    """The mode of sliding of a body under its own weight.
 
     Attributes:
         kind: On both planes of a pair, on the first or second alone, or on a single plane.
         direction: Unit vector of sliding.
-        normal: Normal force on each plane over the weight [1].
-        grip: Sum of normal forces times tan(friction) over the weight [1].
     """
 
     kind: Kind
     direction: Floats
-    normal: tuple[float, float]
-    grip: float
 
     @property
     def drive(self) -> float:
         """Force along the direction over the weight [1]."""
         return float(-self.direction[2])
 
-    def factor(self, weight: float, resistance: float) -> float:
-        """Factor of safety, for a weight [N] and a resistance from cohesion [N]."""
-        return (self.grip * weight + resistance) / (weight * self.drive)
+    @property
+    def heading(self) -> Floats:
+        """Horizontal unit vector of sliding, shape (2,)."""
+        return self.direction[:2] / np.hypot(*self.direction[:2])
+
+
+@dataclass(frozen=True)
+class Rest:
+    """What planes do with forces on bodies.
+
+    Attributes:
+        kind: Index of `KINDS`, shape (...).
+        normal: Normal force of each plane, 0 where the body leaves it [N], shape (..., planes).
+        along: The part of the force that no plane takes [N], shape (..., 3).
+    """
+
+    kind: NDArray[np.int64]
+    normal: Floats
+    along: Floats
+
+
+def rest_on(normals: Floats, force: Floats) -> Rest:
+    """Planes that hold bodies against a force, which may press in any direction.
+
+    After Warburton (1981): a body lifts off if the force leaves all planes; it slides on one plane
+    if the part of the force along that plane leaves the other plane; else on both, along their
+    intersection. Friction does not matter for the mode.
+
+    Args:
+        normals: Unit normals that point into the body, shape (planes, 3); one plane, or two that
+            are not parallel.
+        force: Sum of all forces but those of the rock below [N], shape (..., 3).
+    """
+    press = -force @ normals.T
+    alone = np.maximum(press, 0.0)
+    if len(normals) == 1:
+        kind = np.where(press[..., 0] > 0, PLANE, LIFTS)
+        return Rest(kind, alone, force + alone * normals[0])
+    cosine = float(normals[0] @ normals[1])
+    # what remains along one plane presses on the other one by this much
+    inward = press - cosine * press[..., ::-1]
+    slides = force[..., None, :] + press[..., None] * normals  # along each plane, (..., 2, 3)
+    bar = -LEAVES * np.linalg.norm(slides, axis=-1)[..., ::-1]
+    on_both = (inward >= bar).all(axis=-1)
+    first = (press[..., 0] > 0) & (inward[..., 1] < bar[..., 1])
+    second = (press[..., 1] > 0) & (inward[..., 0] < bar[..., 0])
+    kind = np.select([first, second, on_both], [FIRST, SECOND, BOTH], LIFTS)
+    each = kind[..., None]
+    normal = np.where(each == BOTH, np.maximum(inward, 0.0) / (1 - cosine**2), 0.0)
+    normal = np.where(each == np.array([FIRST, SECOND]), alone, normal)
+    return Rest(kind, normal, force + normal @ normals)
+
+
+def factors(
+    normals: Floats, tangents: Floats, cohesive: Floats, force: Floats
+) -> tuple[Floats, NDArray[np.int64]]:
+    """Factors of safety of bodies, and their modes as indices of `KINDS`.
+
+    F = (sum of N tan(phi) + sum of c A of the planes in contact) / force along the sliding; 0 for a
+    body that lifts off.
+
+    Args:
+        normals: Unit normals that point into the bodies, shape (planes, 3).
+        tangents: Tangents of the friction angles [1], shape (..., planes).
+        cohesive: Cohesion times area [N], shape (..., planes).
+        force: As in `rest_on`, shape (..., 3).
+    """
+    rest = rest_on(normals, force)
+    held = np.where(rest.normal > 0, rest.normal * tangents + cohesive, 0.0).sum(axis=-1)
+    drive = np.linalg.norm(rest.along, axis=-1)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        factor = np.where(rest.kind == LIFTS, 0.0, held / drive)
+    return factor, rest.kind
 
 
 def on_one(plane: JointPlane) -> Sliding | None:
     """Sliding down a plane; None if it is flat."""
-    found = _down_plane(plane.normal)
-    if found is None:
-        return None
-    direction, normal = found
-    return Sliding("plane", direction, (normal, 0.0), normal * plane.tangent)
+    return _sliding(plane.normal[None])
 
 
 def on_two(first: JointPlane, second: JointPlane) -> Sliding | None:
-    """Sliding of a wedge; None if it does not slide, or the planes are parallel.
-
-    After Warburton (1981): it slides down one plane if that direction leaves the other plane, else
-    along the intersection of both. Friction does not matter for the mode.
-    """
-    pairs: list[tuple[Kind, JointPlane, JointPlane]] = [
-        ("first", first, second),
-        ("second", second, first),
-    ]
-    for kind, own, other in pairs:
-        found = _down_plane(own.normal)
-        if found is not None and other.normal @ found[0] > 1e-9:
-            direction, normal = found
-            both = (normal, 0.0) if kind == "first" else (0.0, normal)
-            return Sliding(kind, direction, both, normal * own.tangent)
-    line = np.cross(first.normal, second.normal)
-    size = float(np.linalg.norm(line))
-    if size < 1e-6:
+    """Sliding of a wedge; None if it does not slide, or the planes are parallel."""
+    normals = np.array([first.normal, second.normal])
+    if np.linalg.norm(np.cross(*normals)) < LEAST_FALL:
+        # of two parallel planes the one that is left holds nothing
         return None
-    line *= -np.sign(line[2]) / size
-    if -line[2] < LEAST_FALL:
+    return _sliding(normals)
+
+
+def _sliding(normals: Floats) -> Sliding | None:
+    rest = rest_on(normals, DOWN)
+    size = float(np.linalg.norm(rest.along))
+    if size < LEAST_FALL:
         return None
-    cosine = float(first.normal @ second.normal)
-    n = np.linalg.solve(
-        [[1, cosine], [cosine, 1]], [-first.normal @ DOWN, -second.normal @ DOWN]
-    ).tolist()
-    return Sliding("both", line, (n[0], n[1]), n[0] * first.tangent + n[1] * second.tangent)
-
-
-def _down_plane(normal: Floats) -> tuple[Floats, float] | None:
-    """Direction of steepest descent of a plane, and its normal force per weight."""
-    force = float(-normal @ DOWN)
-    along = DOWN + force * normal
-    size = float(np.linalg.norm(along))
-    return None if size < LEAST_FALL else (along / size, force)
+    return Sliding(KINDS[int(rest.kind)], rest.along / size)

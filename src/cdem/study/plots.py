@@ -113,14 +113,10 @@ def _tornado(table: Table, plot: Plot, axes: Any) -> None:
     bars = effects(table, plot.result)
     if not bars:
         raise ValueError("no parameter with numbers varies")
-    ranked = sorted(bars.items(), key=lambda bar: abs(bar[1][1] - bar[1][0]))[-MOST_BARS:]
-    for place, (_, (low, high)) in enumerate(ranked):
-        axes.barh(place, high - low, left=low, height=0.6, color=color(int(high <= low)))
-    axes.set_yticks(range(len(ranked)), [label_of(table.study, name) for name, _ in ranked])
     name = plot.label or plot.result
+    draw_bars(axes, {label_of(table.study, key): ends for key, ends in bars.items()})
     if table.study.sampling:
-        axes.axvline(0, color="black", lw=0.8)
-        axes.set(xlabel=f"rank correlation with {name}", xlim=(-1, 1))
+        mark_correlations(axes, name)
         return
     axes.use_sticky_edges = False  # or the longest bar would touch the frame
     axes.autoscale_view()
@@ -128,6 +124,20 @@ def _tornado(table: Table, plot: Plot, axes: Any) -> None:
     for number, word in enumerate(("grows", "falls")):
         axes.bar(0, 0, color=color(number), label=f"{word} with the parameter")
     axes.legend(frameon=False, fontsize=8, loc="lower right")
+
+
+def draw_bars(axes: Any, bars: dict[str, tuple[float, float]]) -> None:
+    """Draw a tornado: bars by their label, each with its ends, the longest on top."""
+    ranked = sorted(bars.items(), key=lambda bar: abs(bar[1][1] - bar[1][0]))[-MOST_BARS:]
+    for place, (_, (low, high)) in enumerate(ranked):
+        axes.barh(place, high - low, left=low, height=0.6, color=color(int(high <= low)))
+    axes.set_yticks(range(len(ranked)), [label for label, _ in ranked])
+
+
+def mark_correlations(axes: Any, name: str) -> None:
+    """Label a tornado of rank correlations with a result."""
+    axes.axvline(0, color="black", lw=0.8)
+    axes.set(xlabel=f"rank correlation with {name}", xlim=(-1, 1))
 
 
 def effects(table: Table, result: str) -> dict[str, tuple[float, float]]:
@@ -148,11 +158,18 @@ def effects(table: Table, result: str) -> dict[str, tuple[float, float]]:
         if len(np.unique(values)) < 2:
             continue
         if study.sampling:
-            found[name] = (0.0, float(np.corrcoef(_ranks(values), _ranks(z[here]))[0, 1]))
+            found[name] = (0.0, rank_correlation(values, z[here]))
         else:
             ends = [z[here][values == end].mean() for end in (values.min(), values.max())]
             found[name] = (float(ends[0]), float(ends[1]))
     return found
+
+
+def rank_correlation(x: NDArray[np.float64], z: NDArray[np.float64]) -> float:
+    """Rank correlation of Spearman of two lists of numbers [1]; nan if one of them is constant."""
+    if len(x) < 2 or min(np.ptp(x), np.ptp(z)) == 0:
+        return float("nan")
+    return float(np.corrcoef(_ranks(x), _ranks(z))[0, 1])
 
 
 def _ranks(values: NDArray[np.float64]) -> NDArray[np.float64]:
