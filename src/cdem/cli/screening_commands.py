@@ -115,34 +115,15 @@ def _write_survey(survey: Survey, path: Path) -> list[Path]:
 
 
 def screen(
-    ground: Annotated[
-        Path, typer.Argument(metavar="GROUND", help="A grid (.tif, .asc), or LANDSLIDE.yaml.")
-    ],
-    sets: Annotated[
-        Path, typer.Option("--joints", metavar="JOINTS.yaml", help="Joint sets, or a case.")
-    ],
-    volume: Annotated[
-        tuple[str, str],
-        typer.Option(metavar="FROM TO", help="Range of volumes [m3]: --volume 500 2e5."),
-    ],
-    output: Annotated[
-        Path | None, typer.Option("--output", "-o", help="Folder; default GROUND.screen, here.")
-    ] = None,
-    density: Annotated[
-        str, typer.Option(metavar="KG/M3", help="Density of the rock; matters with cohesion.")
-    ] = "2650",
-    cell: Annotated[
-        float | None, typer.Option(metavar="M", help="Cell size of the map; default the grid's.")
-    ] = None,
-    stride: Annotated[
-        int, typer.Option(min=1, help="Cells between points of the first search.")
-    ] = 4,
-    confirm: Annotated[
-        int, typer.Option(min=0, metavar="N", help="Compute the N worst bodies with cdem critical.")
-    ] = 0,
-    workers: Annotated[
-        int | None, typer.Option(min=1, help="Local processes for them; default all cores.")
-    ] = None,
+    ground: options.GroundFile,
+    sets: options.JointsFile,
+    volume: options.Volumes,
+    output: options.OutputFolder = None,
+    density: options.Density = "2650",
+    cell: options.Cell = None,
+    stride: options.Stride = 4,
+    confirm: options.Confirm = 0,
+    workers: options.Workers = None,
     water: options.Water = None,
     crack: options.Crack = None,
     kh: options.HorizontalShaking = 0.0,
@@ -261,9 +242,7 @@ class _Results:
 
         how = {"stride": stride, "workers": workers or cores()}
         with _progress() as show:
-            self.chance = evaluate(
-                self.found, self.planes, uncertain, columns, report=show, **how
-            )
+            self.chance = evaluate(self.found, self.planes, uncertain, columns, report=show, **how)
         self._print(report.chance_text(self.chance))
 
     def write(self) -> None:

@@ -20,6 +20,32 @@ if TYPE_CHECKING:
 MOST_PGA = 5.0
 """Largest acceleration that is believed [g], as for records."""
 
+GroundFile = Annotated[
+    Path, typer.Argument(metavar="GROUND", help="A grid (.tif, .asc), or LANDSLIDE.yaml.")
+]
+JointsFile = Annotated[
+    Path, typer.Option("--joints", metavar="JOINTS.yaml", help="Joint sets, or a case.")
+]
+Volumes = Annotated[
+    tuple[str, str],
+    typer.Option(metavar="FROM TO", help="Range of volumes [m3]: --volume 500 2e5."),
+]
+OutputFolder = Annotated[
+    Path | None, typer.Option("--output", "-o", help="Folder; default GROUND.screen, here.")
+]
+Density = Annotated[
+    str, typer.Option(metavar="KG/M3", help="Density of the rock; matters with cohesion and water.")
+]
+Cell = Annotated[
+    float | None, typer.Option(metavar="M", help="Cell size of the map; default the grid's.")
+]
+Stride = Annotated[int, typer.Option(min=1, help="Cells between points of the first search.")]
+Confirm = Annotated[
+    int, typer.Option(min=0, metavar="N", help="Compute the N worst bodies with cdem critical.")
+]
+Workers = Annotated[
+    int | None, typer.Option(min=1, help="Local processes for these; default all cores.")
+]
 Water = Annotated[
     str | None,
     typer.Option(
@@ -52,7 +78,9 @@ RecordFile = Annotated[
 UncertainFile = Annotated[
     Path | None,
     typer.Option(
-        "--uncertain", metavar="FILE.yaml", help="Distributions; also maps the probability of F < 1."
+        "--uncertain",
+        metavar="FILE.yaml",
+        help="Distributions; also maps the probability of F < 1.",
     ),
 ]
 

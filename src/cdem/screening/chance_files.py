@@ -11,12 +11,11 @@ import numpy as np
 from cdem.output.figures import pyplot
 from cdem.screening.fos_map import FosMap
 from cdem.screening.probability import Probability
-from cdem.screening.products import Map, draw_maps
+from cdem.screening.products import Map, Style, draw_maps
 from cdem.study.plots import draw_bars, mark_correlations
 from cdem.whole_files import write_text
 
-LEVELS = (0.0, 0.01, 0.05, 0.1, 0.25, 0.5, 0.75, 0.9, 1.0)
-"""Classes of the probability in the picture."""
+STYLE = Style((0.0, 0.01, 0.05, 0.1, 0.25, 0.5, 0.75, 0.9, 1.0), "YlOrRd", "probability of F < 1")
 
 
 def map_of(chance: Probability) -> Map:
@@ -44,8 +43,7 @@ def draw_chance(found: FosMap, chance: Probability, folder: Path) -> list[Path]:
         CdemError: matplotlib is not installed.
     """
     title = f"bodies between joints, {chance.count:,} samples"
-    style = {"levels": LEVELS, "colors": "YlOrRd", "label": "probability of F < 1"}
-    paths = [draw_maps(found, [(title, chance.map)], folder / "probability.png", **style)]
+    paths = [draw_maps(found, [(title, chance.map)], folder / "probability.png", STYLE)]
     name = chance.target[0]
     bars = {
         chance.uncertain.label(key): (0.0, value)

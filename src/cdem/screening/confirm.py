@@ -85,20 +85,7 @@ def confirm(
         except MeshError as error:
             refused[number] = str(error)
             continue
-        search = CriticalSearch(
-            factor=True,
-            between=[part * body.factor for part in BETWEEN],
-            tolerance=TOLERANCE * body.factor,
-            criterion=Criterion(far=FAR),
-        )
-        source = Source(file=str(folder / "study.yaml"))
-        study = Study(
-            _source=source,
-            case=path.name,
-            parameters={"materials.rock.density": [density]},
-            critical=search.model_dump(),
-        )
-        studies[number] = (study, folder / "runs" / path.stem)
+        studies[number] = (_study(path, body.factor, density), folder / "runs" / path.stem)
     tables = run_studies(
         list(studies.values()), workers=workers, progress=progress, should_stop=should_stop
     )
@@ -111,3 +98,19 @@ def confirm(
             why = table.runs[0].why or ("stopped" if np.isnan(computed) else "")
         out.append(Confirmed(number, body.factor, computed, why))
     return out
+
+
+def _study(path: Path, factor: float, density: float) -> Study:
+    """The search for the factor of a case, near that of the closed form."""
+    search = CriticalSearch(
+        factor=True,
+        between=[part * factor for part in BETWEEN],
+        tolerance=TOLERANCE * factor,
+        criterion=Criterion(far=FAR),
+    )
+    return Study(
+        _source=Source(file=str(path.parent / "study.yaml")),
+        case=path.name,
+        parameters={"materials.rock.density": [density]},
+        critical=search.model_dump(),
+    )

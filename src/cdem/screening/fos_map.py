@@ -106,7 +106,9 @@ def screen(
     """
     _check(ground, limits, stride)
     loads = loads or Loads()
-    out = _empty(ground, limits, loads, screen_profiles(ground, planes, limits, loads, yields=yields))
+    out = _empty(
+        ground, limits, loads, screen_profiles(ground, planes, limits, loads, yields=yields)
+    )
     some = _groups(planes)
     for number, (group, sliding) in enumerate(some):
         name = " and ".join(plane.name for plane in group)
@@ -158,9 +160,7 @@ def _every(stride: int, shape: tuple[int, ...]) -> Bools:
 def _empty(ground: Ground, limits: Limits, loads: Loads, profiles: Profiles) -> FosMap:
     shape = ground.grid.values.shape
     factor, volume = np.full(shape, np.nan), np.full(shape, np.nan)
-    return FosMap(
-        ground, limits, factor, volume, np.zeros(shape, np.uint8), profiles, loads=loads
-    )
+    return FosMap(ground, limits, factor, volume, np.zeros(shape, np.uint8), profiles, loads=loads)
 
 
 def _check(ground: Ground, limits: Limits, stride: int) -> None:

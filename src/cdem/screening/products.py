@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -22,10 +23,6 @@ Floats = NDArray[np.float64]
 BODIES = "bodies.gpkg"
 SHOWN = 10
 """Most bodies in the report."""
-LEVELS = (0.6, 0.8, 1.0, 1.2, 1.5, 2.0, 3.0)
-"""Classes of the factor of safety in the picture."""
-SLIPS = (0.001, 0.01, 0.05, 0.1, 0.3, 1.0, 3.0)
-"""Classes of the permanent displacement in the picture [m]."""
 
 
 def outline(body: Body, ground: Ground) -> Any:
@@ -44,6 +41,23 @@ def outline(body: Body, ground: Ground) -> Any:
     return max(parts[shapely.get_type_id(parts) == 3], key=lambda part: part.area)
 
 
+@dataclass(frozen=True)
+class Style:
+    """Look of maps in a picture.
+
+    Attributes:
+        levels: Limits of the classes.
+        colors: Name of the colours in matplotlib.
+        label: Label of the colours.
+    """
+
+    levels: Sequence[float]
+    colors: str
+    label: str
+
+
+FACTOR = Style((0.6, 0.8, 1.0, 1.2, 1.5, 2.0, 3.0), "RdYlGn", "least factor of safety")
+SLIP = Style((0.001, 0.01, 0.05, 0.1, 0.3, 1.0, 3.0), "YlOrRd", "permanent displacement [m]")
 Map = tuple[str, NDArray, str, str]
 """Name of a file without its ending, values, meaning, unit."""
 
@@ -175,8 +189,7 @@ def draw(found: FosMap, path: Path) -> Path:
     maps = [("bodies between joints", found.factor)]
     if found.profiles.count:
         maps.append(("plane failure of profiles, sides assumed free", found.profiles.factor))
-    style = {"levels": LEVELS, "colors": "RdYlGn", "label": "least factor of safety"}
-    return draw_maps(found, maps, path, **style)
+    return draw_maps(found, maps, path, FACTOR)
 
 
 def draw_slip(found: FosMap, shaken: Shaken, path: Path) -> Path:
@@ -188,28 +201,17 @@ def draw_slip(found: FosMap, shaken: Shaken, path: Path) -> Path:
     maps = [("bodies between joints", shaken.slip)]
     if found.profiles.count:
         maps.append(("plane failure of profiles, sides assumed free", shaken.plane_slip))
-    style = {"levels": SLIPS, "colors": "YlOrRd", "label": "permanent displacement [m]"}
-    return draw_maps(found, maps, path, **style)
+    return draw_maps(found, maps, path, SLIP)
 
 
-def draw_maps(
-    found: FosMap,
-    maps: Sequence[tuple[str, Floats]],
-    path: Path,
-    *,
-    levels: Sequence[float],
-    colors: str,
-    label: str,
-) -> Path:
+def draw_maps(found: FosMap, maps: Sequence[tuple[str, Floats]], path: Path, style: Style) -> Path:
     """Draw maps over a hillshade side by side, the first with the outlines of the worst bodies.
 
     Args:
         found: Ground and bodies.
         maps: Title and values of each map, shape (rows, columns).
         path: The PNG.
-        levels: Limits of the classes.
-        colors: Name of the colours in matplotlib.
-        label: Label of the colours.
+        style: Their colours.
 
     Raises:
         CdemError: matplotlib is not installed.
@@ -223,8 +225,8 @@ def draw_maps(
     size = (each[0] * shape[1] + 1.2, each[1] * shape[0])
     figure, axes = plt.subplots(*shape, figsize=size, squeeze=False, layout="constrained")
     for panel, (title, values) in zip(axes.ravel(), maps, strict=True):
-        shown = _draw_map(panel, ground, values, title, levels, colors)
-    figure.colorbar(shown, ax=axes, shrink=0.75, label=label)
+        shown = _draw_map(panel, ground, values, title, style)
+    figure.colorbar(shown, ax=axes, shrink=0.75, label=style.label)
     _draw_outlines(axes[0, 0], found)
     figure.savefig(path, dpi=110)
     plt.close(figure)
@@ -244,9 +246,7 @@ def _draw_outlines(axes: Any, found: FosMap) -> None:
         axes.text(place.x, place.y, str(number), path_effects=around, **style)
 
 
-def _draw_map(
-    axes: Any, ground: Ground, values: Floats, title: str, levels: Sequence[float], name: str
-) -> Any:
+def _draw_map(axes: Any, ground: Ground, values: Floats, title: str, style: Style) -> Any:
     from matplotlib import colormaps
     from matplotlib.colors import BoundaryNorm
 
@@ -254,12 +254,11 @@ def _draw_map(
     extent = (grid.low[0], grid.high[0], grid.low[1], grid.high[1])
     light = np.array([-1.0, 1.0, 1.2])  # from the north-west
     shade = ground.normal @ light / np.linalg.norm(ground.normal, axis=-1) / np.linalg.norm(light)
-    style = {"origin": "lower", "extent": extent, "interpolation": "nearest"}
-    axes.imshow(np.clip(shade, 0, 1), cmap="gray", vmin=-0.1, vmax=1.1, **style)
-    colors = colormaps[name]
-    extend = "neither" if levels[0] == 0 else "both"
-    norm = BoundaryNorm(levels, colors.N, extend=extend)
-    shown = axes.imshow(values, cmap=colors, norm=norm, alpha=0.75, **style)
+    place: dict[str, Any] = {"origin": "lower", "extent": extent, "interpolation": "nearest"}
+    axes.imshow(np.clip(shade, 0, 1), cmap="gray", vmin=-0.1, vmax=1.1, **place)
+    colors = colormaps[style.colors]
+    norm = BoundaryNorm(style.levels, colors.N, extend="both" if style.levels[0] else "neither")
+    shown = axes.imshow(values, cmap=colors, norm=norm, alpha=0.75, **place)
     axes.set(xlabel="x, east [m]", ylabel="y, north [m]", aspect="equal")
     axes.ticklabel_format(style="plain", useOffset=False)
     axes.tick_params(labelsize=8)

@@ -63,13 +63,12 @@ class _Sections:
     @classmethod
     def none(cls, count: int) -> _Sections:
         """Sections of no length."""
-        zeros = [np.zeros(count) for _ in range(4)]
-        cells, cracked = np.zeros(count, np.int64), np.zeros(count, bool)
-        return cls(cells, *zeros[:3], cracked, zeros[3])
+        plan, area, wet, water = (np.zeros(count) for _ in range(4))
+        return cls(np.zeros(count, np.int64), plan, area, wet, np.zeros(count, bool), water)
 
     def some(self, which: NDArray[np.bool_]) -> _Sections:
         """Some of the sections."""
-        return _Sections(*(values[which] for values in vars(self).values()))
+        return _Sections(**{name: values[which] for name, values in vars(self).items()})
 
 
 def screen_profiles(

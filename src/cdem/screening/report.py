@@ -157,7 +157,9 @@ def shaken_facts(shaken: Shaken) -> dict[str, Any]:
         "moving_at_rest": shaken.moving,
         "yield": finite(shaken.listed_yields),
         "newmark": finite(shaken.listed_slips),
-        "largest_newmark": finite([np.max(shaken.slip, where=np.isfinite(shaken.slip), initial=0.0)])[0],
+        "largest_newmark": finite(
+            [np.max(shaken.slip, where=np.isfinite(shaken.slip), initial=0.0)]
+        )[0],
     }
 
 
@@ -171,7 +173,9 @@ def chance_facts(chance: Probability) -> dict[str, Any]:
         "standard_error": standard_error(failed, chance.count),
         "lowest_fos": finite(chance.lowest),
         "unstable_share": finite(chance.unstable),
-        "influence": dict(zip(chance.influence(), finite(chance.influence().values()), strict=True)),
+        "influence": dict(
+            zip(chance.influence(), finite(chance.influence().values()), strict=True)
+        ),
         "bodies": {
             "probability": finite(p),
             "standard_error": finite(np.sqrt(p * (1 - p) / chance.count)),

@@ -16,7 +16,6 @@ from cdem.case.explain import explain
 from cdem.case.reader import load_case_data, plain
 from cdem.case.source import Keys, Source
 from cdem.case.types import Part
-from cdem.errors import CaseError
 from cdem.joints.directions import pole
 from cdem.screening.loads import Loads
 from cdem.screening.planes import STEEPEST, JointPlane
@@ -167,8 +166,13 @@ class Sample:
     @classmethod
     def of(cls, row: dict[str, float], planes: Sequence[JointPlane], loads: Loads) -> Sample:
         """Sets and loads with drawn values, in SI and degrees, by name."""
-        given = {"share" if name == "water" else name: row[name] for name in OF_LOADS if name in row}
-        return cls(tuple(_drawn(plane, row) for plane in planes), replace(loads, **given))
+        drawn = replace(
+            loads,
+            kh=row.get("kh", loads.kh),
+            kv=row.get("kv", loads.kv),
+            share=row.get("water", loads.share),
+        )
+        return cls(tuple(_drawn(plane, row) for plane in planes), drawn)
 
 
 def _drawn(plane: JointPlane, row: dict[str, float]) -> JointPlane:
@@ -177,7 +181,10 @@ def _drawn(plane: JointPlane, row: dict[str, float]) -> JointPlane:
     if any(key in own for key in DIRECTIONS):
         dip = min(own.get("dip", plane.dip), STEEPEST)
         normal = pole(dip, own.get("dip_direction", plane.dip_direction) % 360)
-    friction, cohesion = own.get("friction_angle", plane.friction), own.get("cohesion", plane.cohesion)
+    friction, cohesion = (
+        own.get("friction_angle", plane.friction),
+        own.get("cohesion", plane.cohesion),
+    )
     return JointPlane(plane.name, normal, friction, cohesion, plane.persistence)
 
 

@@ -33,7 +33,9 @@ def slip_of_record(record: Processed, yields: Floats) -> Floats:
     largest = float(np.abs(a).max())
     ratio = np.geomspace(LEAST_RATIO, 1.0, TABLE - 1)
     ratio = np.sort(np.append(ratio, 0.5 * (ratio[-1] + ratio[-2])))
-    slips = np.array([max(newmark_slip(sign * a, step, r * largest) for sign in (1, -1)) for r in ratio])
+    slips = np.array(
+        [max(newmark_slip(sign * a, step, r * largest) for sign in (1, -1)) for r in ratio]
+    )
     at = np.asarray(yields, float) * GRAVITY / largest
     with np.errstate(invalid="ignore", divide="ignore"):
         # slip times ratio is bounded at small ratios, its root nearly linear at large ones

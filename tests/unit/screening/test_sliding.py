@@ -6,7 +6,19 @@ from shared.hills import joint
 
 from cdem.joints.directions import poles
 from cdem.joints.kinematics import intersections
-from cdem.screening.sliding import BOTH, DOWN, FIRST, KINDS, LIFTS, PLANE, SECOND, factors, on_one, on_two, rest_on
+from cdem.screening.sliding import (
+    BOTH,
+    DOWN,
+    FIRST,
+    KINDS,
+    LIFTS,
+    PLANE,
+    SECOND,
+    factors,
+    on_one,
+    on_two,
+    rest_on,
+)
 
 WEDGES = [
     ((55, 135, 30), (55, 225, 30), 0.701351),
