@@ -21,6 +21,12 @@ LARGEST_FILE = 20_000_000
 """Largest size of a case or study [bytes]; reading so many takes minutes."""
 MOST_BITS = 1000
 """Most digits of a whole number; longer ones do not fit a floating-point number."""
+STARTS = {
+    "case": "'cdem new incline' writes one to start from",
+    "study": "see docs/sweep.md",
+    "distribution": "see docs/screening.md",
+}
+"""Where to look for the content of an empty file, for each kind of file."""
 
 
 def load_case_data(
@@ -31,7 +37,7 @@ def load_case_data(
     Args:
         path: A YAML file.
         overrides: Texts such as ``"time.safety=0.5"``; the part after ``=`` is read as YAML.
-        what: "case" or "study".
+        what: The kind of file, a key of `STARTS`.
 
     Returns:
         The data, and the place of each value in the file.
@@ -48,10 +54,7 @@ def load_case_data(
     source = Source(file=str(path))
     tree = parse(text, str(path))
     if tree is None:
-        hint = (
-            "'cdem new incline' writes one to start from" if what == "case" else "see docs/sweep.md"
-        )
-        raise CaseError(f"{path}: the file is empty; {hint}")
+        raise CaseError(f"{path}: the file is empty; {STARTS[what]}")
     if not isinstance(tree, dict):
         raise CaseError(f"{path}:1:1: a {what} is a mapping (key: value), got {describe(tree)}")
     _note_places(tree, source, ())

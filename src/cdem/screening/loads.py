@@ -155,7 +155,12 @@ def _from_grid(path: Path, ground: Grid) -> tuple[float, Floats | None, list[str
     y = ground.south + ground.step[1] * np.arange(rows)
     xy = np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2)
     inside = ((xy >= grid.low) & (xy <= grid.high)).all(axis=1)
-    level = np.where(inside, grid(xy), np.nan).reshape(rows, columns)
+    # beside a cell without a height, the cell itself counts
+    cell = np.rint((xy - [grid.west, grid.south]) / grid.step).astype(int)
+    j, i = np.clip(cell, 0, np.array(grid.values.shape[::-1]) - 1).T
+    between = grid(xy)
+    level = np.where(np.isnan(between), grid.values[i, j], between)
+    level = np.where(inside, level, np.nan).reshape(rows, columns)
     if not np.isfinite(level).any():
         raise CaseError(
             f"{path}: has no height of the water table on the map; are both in one projection?"

@@ -71,7 +71,7 @@ class Uncertain(_Uncertain):
         Raises:
             CaseError: The file cannot be read or is wrong; one line for each problem.
         """
-        data, source = load_case_data(path, what="uncertainty")
+        data, source = load_case_data(path, what="distribution")
         return cls(_source=source, **data)
 
     def for_sets(self, planes: Sequence[JointPlane], loads: Loads) -> None:

@@ -10,10 +10,8 @@ from cdem.seismic.processing import GRAVITY, Processed
 
 Floats = NDArray[np.float64]
 
-TABLE = 60
-"""Number of yield accelerations for which a record is integrated."""
-LEAST_RATIO = 0.01
-"""Least of them over the largest acceleration of the record [1]."""
+RATIOS = np.concatenate([np.geomspace(0.01, 0.5, 30), np.linspace(0.5, 1.0, 41)[1:]])
+"""Yield accelerations over the largest acceleration, for which a record is integrated [1]."""
 POWER = 2.4
 """Root of the slip that is nearly linear close to the largest acceleration [1]."""
 MAGNITUDES = (5.3, 7.6)
@@ -23,7 +21,7 @@ MAGNITUDES = (5.3, 7.6)
 def slip_of_record(record: Processed, yields: Floats) -> Floats:
     """Slip of rigid blocks on level ground in a record [m], shape as `yields`.
 
-    The larger of both polarities. Interpolated in a table of 60 yield accelerations.
+    The larger of both polarities. Interpolated in a table of 70 yield accelerations.
 
     Args:
         record: The motion of the ground.
@@ -31,15 +29,13 @@ def slip_of_record(record: Processed, yields: Floats) -> Floats:
     """
     a, step = record.acceleration, record.step
     largest = float(np.abs(a).max())
-    ratio = np.geomspace(LEAST_RATIO, 1.0, TABLE - 1)
-    ratio = np.sort(np.append(ratio, 0.5 * (ratio[-1] + ratio[-2])))
     slips = np.array(
-        [max(newmark_slip(sign * a, step, r * largest) for sign in (1, -1)) for r in ratio]
+        [max(newmark_slip(sign * a, step, r * largest) for sign in (1, -1)) for r in RATIOS]
     )
     at = np.asarray(yields, float) * GRAVITY / largest
     with np.errstate(invalid="ignore", divide="ignore"):
         # slip times ratio is bounded at small ratios, its root nearly linear at large ones
-        found = np.interp(at, ratio, (slips * ratio) ** (1 / POWER)) ** POWER / at
+        found = np.interp(at, RATIOS, (slips * RATIOS) ** (1 / POWER)) ** POWER / at
     return np.where(at > 0, np.where(at < 1, found, 0.0), np.nan)
 
 
