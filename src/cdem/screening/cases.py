@@ -206,7 +206,7 @@ def _case_text(
     beds = [(f"bed{k + 1}", body.planes[k]) for k in planes]
     lines = [
         f"# Body {number} of cdem screen: {body.name}, {body.volume:.0f} m3, F = {body.factor:.3f} by",
-        f"# closed form: {loads.text()}.",
+        f"# closed form; {loads.text()}.",
         f"# To compute it: cdem critical {name}.yaml --factor --criterion far={FAR}",
         "cdem: 2",
         f"title: Body {number} of a screening",

@@ -52,7 +52,7 @@ def draw_chance(found: FosMap, chance: Probability, folder: Path) -> list[Path]:
     }
     if bars:
         plt = pyplot()
-        figure, axes = plt.subplots(figsize=(6.0, 1.4 + 0.4 * len(bars)))
+        figure, axes = plt.subplots(figsize=(7.0, 1.4 + 0.4 * len(bars)))
         draw_bars(axes, bars)
         mark_correlations(axes, name)
         figure.tight_layout()

@@ -57,7 +57,8 @@ class Style:
 
 
 FACTOR = Style((0.6, 0.8, 1.0, 1.2, 1.5, 2.0, 3.0), "RdYlGn", "least factor of safety")
-SLIP = Style((0.001, 0.01, 0.05, 0.1, 0.3, 1.0, 3.0), "YlOrRd", "permanent displacement [m]")
+SLIP_WORDS = "permanent displacement [m]; darkest: also what moves without shaking"
+SLIP = Style((0.001, 0.01, 0.05, 0.1, 0.3, 1.0, 3.0), "YlOrRd", SLIP_WORDS)
 Map = tuple[str, NDArray, str, str]
 """Name of a file without its ending, values, meaning, unit."""
 
@@ -195,12 +196,19 @@ def draw(found: FosMap, path: Path) -> Path:
 def draw_slip(found: FosMap, shaken: Shaken, path: Path) -> Path:
     """Draw permanent displacements of bodies, and of profiles.
 
+    What moves without shaking has the colour of the largest displacements.
+
     Raises:
         CdemError: matplotlib is not installed.
     """
-    maps = [("bodies between joints", shaken.slip)]
+
+    def shown(yields: Floats, slip: Floats) -> Floats:
+        return np.where(yields <= 0, 10 * SLIP.levels[-1], slip)
+
+    maps = [("bodies between joints", shown(shaken.yields, shaken.slip))]
     if found.profiles.count:
-        maps.append(("plane failure of profiles, sides assumed free", shaken.plane_slip))
+        title = "plane failure of profiles, sides assumed free"
+        maps.append((title, shown(shaken.plane_yields, shaken.plane_slip)))
     return draw_maps(found, maps, path, SLIP)
 
 

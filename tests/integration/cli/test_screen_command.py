@@ -57,6 +57,108 @@ def test_maps_bodies_and_a_picture(run_cli, hill):
     assert status == 0 and json.loads(out)["bodies"][0]["fos"] == pytest.approx(table["fos"][0])
 
 
+UNCERTAIN = """uncertain: 1
+parameters:
+  J1.friction_angle: {normal: {mean: 30, deviation: 3, low: 0}}
+  J2.cohesion: {lognormal: {mean: 60, deviation: 40}, unit: kPa}
+  water: {triangular: {low: 0, mode: 0.1, high: 0.4}}
+sampling: {count: 20, seed: 1, method: monte-carlo}
+"""
+
+
+def test_water_shaking_and_probability(run_cli, hill):
+    """All products at once, in a folder with a space in its name."""
+    (hill / "un certain.yaml").write_text(UNCERTAIN)
+    words = (
+        "screen",
+        "hill.tif",
+        "--joints",
+        "joints.yaml",
+        "--volume",
+        "500",
+        "1e5",
+        "--stride",
+        "8",
+    )
+    words += ("--water", "0.1", "--kh", "0.05", "--kv", "-0.02", "--crack", "5 m", "--pga", "0.4g")
+    words += ("--magnitude", "6.8", "--uncertain", "un certain.yaml", "-o", "a b")
+    status, out, err = run_cli(*words)
+    assert (status, err) == (0, "")
+    for said in (
+        "water table at 0.1 of the height", "tension crack of 5 m in profiles", "shaken by 0.05 g",
+        "magnitude 6.8, PGA 0.4 g (Jibson 2007)", "20 samples, monte-carlo, seed 1",
+        "J2.cohesion [kPa]: mean", "+- ", "rank correlation with F of the worst body",
+    ):  # fmt: skip
+        assert said in out
+    maps = {}
+    for name in ("fos", "fos_yield", "fos_newmark", "fos_plane_yield", "fos_plane_newmark",
+                 "fos_probability"):  # fmt: skip
+        with rasterio.open(f"a b/{name}.tif") as file:
+            maps[name] = file.read(1)
+    known = np.isfinite(maps["fos"])
+    assert (np.isfinite(maps["fos_yield"]) == known).all()
+    assert (np.isfinite(maps["fos_newmark"]) == (maps["fos_yield"] > 0)).all()
+    assert 0 < maps["fos_probability"][known].max() <= 1
+    meta, _, _, values = raw.read("a b/bodies.gpkg", layer="bodies")
+    table = dict(zip(meta["fields"], values, strict=True))
+    for name in ("yield_g", "newmark_m", "probability", "mean_fos", "reliability"):
+        assert len(table[name]) == len(table["fos"])
+    rows = (hill / "a b/samples.csv").read_text().splitlines()
+    assert len(rows) == 21 and rows[0].endswith("water,lowest_fos,unstable_share,worst_fos")
+    for name in ("fos", "newmark", "probability", "tornado"):
+        assert (hill / f"a b/{name}.png").stat().st_size > 5000
+    status, out, _ = run_cli(*words, "--json")
+    facts = json.loads(out)
+    assert facts["loads"] == {
+        "kh": 0.05, "kv": -0.02, "water": 0.1, "water_table": False, "crack": 5.0
+    }  # fmt: skip
+    assert facts["earthquake"]["yield"][0] == pytest.approx(table["yield_g"][0])
+    assert facts["probability"]["bodies"]["probability"][0] == table["probability"][0]
+
+
+def test_a_record_and_a_water_table(run_cli, hill):
+    t = np.arange(0, 8, 0.01)
+    a = 0.5 * np.sin(6 * t) * np.exp(-(((t - 4) / 2) ** 2))
+    text = "\n".join(["t [s], a [g]", *(f"{x:.2f}, {y:.6f}" for x, y in zip(t, a, strict=True))])
+    (hill / "quake.csv").write_text(text)
+    words = (
+        "screen",
+        "hill.tif",
+        "--joints",
+        "joints.yaml",
+        "--volume",
+        "500",
+        "1e5",
+        "--stride",
+        "8",
+    )
+    status, out, err = run_cli(*words, "--record", "quake.csv", "--water", "215 m")
+    assert (status, err) == (0, "")
+    assert "with a water table" in out and "record quake.csv, PGA 0.4" in out
+
+
+@pytest.mark.parametrize(
+    ("more", "said"),
+    [
+        (("--water", "1.2"), "--water 1.2: a number must lie in 0 to 1"),
+        (("--water", "nothing.tif"), "nothing.tif: cannot read"),
+        (("--crack", "-3 m"), "--crack must lie above 0"),
+        (("--kh", "9"), "--kh must lie in 0 to 5, got 9"),
+        (("--kv", "1"), "--kv must lie in -5 to 0.99, got 1"),
+        (("--pga", "0.3"), "--pga 0.3: write the unit: 0.3g"),
+        (("--pga", "30g"), "--pga must lie above 0 and up to 5 g, got 30g"),
+        (("--magnitude", "7"), "--magnitude goes with --pga"),
+        (("--pga", "0.3g", "--record", "a.csv"), "--pga and --record both give an earthquake"),
+        (("--record", "joints.csv"), "joints.csv: "),
+        (("--uncertain", "nothing.yaml"), "nothing.yaml: cannot read the distribution file"),
+    ],
+)
+def test_wrong_loads_are_one_line(run_cli, hill, more, said):
+    words = ("screen", "hill.tif", "--joints", "joints.yaml", "--volume", "500", "1e5")
+    status, _, err = run_cli(*words, *more)
+    assert status == 1 and said in err and err.count("\n") == 1
+
+
 def test_mistakes_are_one_message(run_cli, hill):
     words = ("screen", "hill.tif", "--joints", "joints.yaml")
     status, _, err = run_cli(*words)

@@ -8,6 +8,7 @@ import cdem
 from cdem.screening import cases
 from cdem.screening.bodies import Ground, Limits
 from cdem.screening.fos_map import screen
+from cdem.screening.loads import Loads
 from cdem.screening.sliding import on_one, on_two
 from cdem.study.criterion import Criterion
 from cdem.study.critical import find_critical, strength_reduction
@@ -71,3 +72,17 @@ def test_a_case_fails_at_the_factor_of_the_closed_form(tmp_path, monkeypatch):
         threads=1,
     )
     assert result.value == pytest.approx(body.factor, rel=0.06)
+
+
+def test_water_and_shaking_of_a_case(tmp_path, ground):
+    loads = Loads(kh=0.1, kv=0.05, share=0.4)
+    found = screen(ground, SOUTH, Limits(2000, 1e5, 26e3), loads=loads)
+    case = cdem.Case.load(cases.write_case(found.bodies[0], 1, found, tmp_path))
+    # the wedge slides to the south
+    assert case.loads.gravity == pytest.approx([0, -0.981, -0.95 * 9.81], abs=1e-6)
+    assert [field.interface for field in case.water.fields] == ["bed1", "bed2"]
+    wet = cdem.Simulation(case, threads=1).audit.as_dict()["water"]
+    body = found.bodies[0]
+    lift = 9810 * 0.4 * np.array(body.heads) * body.areas
+    wanted = lift @ [plane.normal for plane in body.planes]
+    assert wet["force_on_free_nodes"] == pytest.approx(wanted, abs=0.06 * np.linalg.norm(wanted))

@@ -1,5 +1,7 @@
 """Both factors of the worst bodies, without a cluster."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from shared.hills import frustum, joint
@@ -52,3 +54,10 @@ def test_studies_and_what_becomes_of_them(found, tmp_path, monkeypatch):
     study, folder = asked[1]
     assert folder == tmp_path / "confirm/runs/body3" and study.critical.factor
     assert study.critical.between == pytest.approx([0.5 * closed[2], 2 * closed[2]])
+
+
+def test_a_body_that_lifts_off_is_not_computed(found, tmp_path, monkeypatch):
+    monkeypatch.setattr(confirm, "run_studies", lambda studies, **how: [])
+    lifted = replace(found, bodies=[replace(found.bodies[0], factor=0.0, kind="lifts")])
+    (one,) = confirm.confirm(lifted, 1, tmp_path / "confirm")
+    assert "not computed: it lifts off" in one.text()
