@@ -57,7 +57,7 @@ class Style:
 
 
 FACTOR = Style((0.6, 0.8, 1.0, 1.2, 1.5, 2.0, 3.0), "RdYlGn", "least factor of safety")
-SLIP_WORDS = "permanent displacement [m]; darkest: also what moves without shaking"
+SLIP_WORDS = "permanent displacement [m]\n(darkest: or moves without shaking)"
 SLIP = Style((0.001, 0.01, 0.05, 0.1, 0.3, 1.0, 3.0), "YlOrRd", SLIP_WORDS)
 Map = tuple[str, NDArray, str, str]
 """Name of a file without its ending, values, meaning, unit."""

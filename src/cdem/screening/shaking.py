@@ -16,6 +16,9 @@ from cdem.seismic.processing import GRAVITY, Processed
 
 Floats = NDArray[np.float64]
 
+FAR = 10.0
+"""Larger displacements are not told: they grow without bound as a yield acceleration goes to 0 [m]."""
+
 
 @dataclass(frozen=True)
 class Earthquake:
@@ -78,8 +81,8 @@ class Shaken:
     def lines(self) -> list[str]:
         """The results as lines of text."""
         known = np.isfinite(self.yields)
-        lines = [f"{self.quake.text()}: bodies move by up to {_most(self.slip)} m, profiles by up "
-                 f"to {_most(self.plane_slip)} m"]  # fmt: skip
+        both = [_most(slip) for slip in (self.slip, self.plane_slip)]
+        lines = [f"{self.quake.text()}: bodies move by {both[0]}, profiles by {both[1]}"]
         if self.moving:
             cells = 100 * (self.yields[known] <= 0).mean()
             lines.append(
@@ -96,7 +99,8 @@ class Shaken:
 
 def _most(slip: Floats) -> str:
     known = slip[np.isfinite(slip)]
-    return f"{known.max():.3g}" if len(known) else "no"
+    most = float(known.max(initial=0.0))
+    return f"up to {most:.3g} m" if most <= FAR else f"more than {FAR:g} m"
 
 
 def shake(found: FosMap, quake: Earthquake) -> Shaken:
