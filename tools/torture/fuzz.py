@@ -102,9 +102,10 @@ def make(kind: str, seed: int, number: int, seeds: list[Path]) -> tuple[str, byt
 
 
 def read_case(path: Path) -> None:
-    """Read a case, study or landslide file; build the model of a case if it is small."""
+    """Read a case, study, landslide or distribution file; build the model of a case if it is small."""
     from cdem.case.case import Case
     from cdem.run.simulation import Simulation
+    from cdem.screening.uncertain import Uncertain
     from cdem.study.plan import plan
     from cdem.study.schema import run_count
     from cdem.study.study import Study
@@ -112,6 +113,9 @@ def read_case(path: Path) -> None:
 
     seed = path.with_name(path.name.replace("-now-", "-"))  # none for an input of the corpus
     sound = (seed if seed.exists() else path).read_text(errors="replace")
+    if "\nuncertain:" in sound:
+        Uncertain.load(path).draw()
+        return
     if "\nparameters:" in sound:
         study = Study.load(path)
         if run_count(study) <= 20:

@@ -19,6 +19,7 @@ from cdem.case.record_checks import record_contradictions
 from cdem.case.schema import CaseParts, Stage
 from cdem.case.softening import softening_problems
 from cdem.case.surface_schema import surface_groups
+from cdem.case.water_schema import Water
 from cdem.errors import CaseError
 
 Problem = tuple[tuple[str | int, ...], str]  # path, problem
@@ -132,14 +133,19 @@ def _water(case: CaseParts) -> Iterator[Problem]:
     for i, field in enumerate(case.water.fields):
         if field.interface is not None and field.interface not in named:
             yield ("water", "fields", i, "interface"), _no("interface", field.interface, named)
-    gx, gy, gz = case.loads.gravity
-    given = all(f.formula is not None or f.table is not None for f in case.water.fields)
-    if not gz < 0 or ((gx or gy) and not (given and case.water.reservoir is None)):
+    if not _gravity_fits(case.loads.gravity, case.water):
         yield (
             ("loads", "gravity"),
-            f"must point along -z in a case with water, got {[gx, gy, gz]}; only water by formula or "
-            "table may go with a horizontal part",
+            f"must point along -z in a case with water, got {list(case.loads.gravity)}; only water by "
+            "formula or table may go with a horizontal part",
         )
+
+
+def _gravity_fits(gravity: Sequence[float], water: Water) -> bool:
+    """Whether water goes with a direction of gravity: heights of water need that along -z."""
+    x, y, z = gravity
+    given = all(f.formula is not None or f.table is not None for f in water.fields)
+    return z < 0 and ((x == 0 and y == 0) or (given and water.reservoir is None))
 
 
 def _mesh_file(case: CaseParts, folder: Path) -> Iterator[Problem]:

@@ -191,10 +191,14 @@ def mesh(
 
 
 def schema(
-    of: Annotated[Literal["case", "study"], typer.Argument(help="Kind of file.")] = "case",
+    of: Annotated[
+        Literal["case", "study", "uncertain"], typer.Argument(help="Kind of file.")
+    ] = "case",
 ) -> None:
-    """Print the JSON schema of a case or a study, for editors."""
+    """Print the JSON schema of a case, a study or uncertain values, for editors."""
     from cdem.case.case import Case
+    from cdem.screening.uncertain import Uncertain
     from cdem.study.study import Study
 
-    print(json.dumps((Case if of == "case" else Study).schema(), indent=2))
+    kinds = {"case": Case.schema, "study": Study.schema, "uncertain": Uncertain.schema}
+    print(json.dumps(kinds[of](), indent=2))

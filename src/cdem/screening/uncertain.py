@@ -74,6 +74,12 @@ class Uncertain(_Uncertain):
         data, source = load_case_data(path, what="distribution")
         return cls(_source=source, **data)
 
+    @classmethod
+    def schema(cls) -> dict[str, Any]:  # type: ignore[override]
+        """Return the JSON schema of a file of distributions, for editors."""
+        whole = cls.model_json_schema() | {"title": "cdem uncertain"}
+        return {"$schema": "https://json-schema.org/draft/2020-12/schema"} | whole
+
     def for_sets(self, planes: Sequence[JointPlane], loads: Loads) -> None:
         """Check all names against the sets and loads.
 

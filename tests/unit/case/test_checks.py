@@ -116,3 +116,24 @@ def test_mistakes_about_joints_are_named(changes, message):
     with pytest.raises(cdem.CaseError) as error:
         jointed_case(changes)
     assert message in str(error.value)
+
+
+@pytest.mark.parametrize(
+    ("field", "gravity", "fits"),
+    [
+        ({"level": 5}, [0, 0, -9.81], True),
+        ({"level": 5}, [1, 0, -9.81], False),
+        ({"formula": "100"}, [1, 0, -9.81], True),  # pressures do not depend on gravity
+        ({"table": "water.csv"}, [0, 1, -9.81], True),
+        ({"formula": "100"}, [1, 0, 0], False),
+    ],
+)
+def test_gravity_beside_water(write, field, gravity, fits):
+    water = f"water: {{fields: [{field}]}}\n".replace("'", '"')
+    text = INCLINE.replace("gravity: [0, 0, -9.81]", f"gravity: {gravity}") + water
+    assert str(gravity) in text
+    if fits:
+        Case.load(write(text))
+        return
+    with pytest.raises(CaseError, match="must point along -z in a case with water"):
+        Case.load(write(text))

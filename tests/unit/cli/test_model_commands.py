@@ -98,6 +98,7 @@ def test_schema_is_json(run_cli):
     assert status == 0
     assert "materials" in json.loads(out)["properties"]
     assert "parameters" in json.loads(run_cli("schema", "study")[1])["properties"]
+    assert "sampling" in json.loads(run_cli("schema", "uncertain")[1])["properties"]
 
 
 def test_a_warning_is_told_once_and_strict_refuses_it(run_cli, cube_folder):
