@@ -16,6 +16,11 @@ from cdem.cli.options import Force, Overwrite, print_paths, stop_on_signal
 from cdem.errors import CaseError, CdemError
 
 GRAVITY = 9.81
+OPTIONAL = (
+    "fos_yield.tif", "fos_newmark.tif", "fos_plane_yield.tif", "fos_plane_newmark.tif",
+    "newmark.png", "fos_probability.tif", "samples.csv", "probability.png", "tornado.png",
+)  # fmt: skip
+"""Files that only some options of `cdem screen` write."""
 
 if TYPE_CHECKING:
     from cdem.joints.kinematics import Slope
@@ -26,6 +31,7 @@ if TYPE_CHECKING:
     from cdem.screening.loads import Loads
     from cdem.screening.planes import JointPlane
     from cdem.screening.probability import Floats, Probability
+    from cdem.screening.products import Map
     from cdem.screening.shaking import Earthquake, Shaken
     from cdem.screening.uncertain import Uncertain
     from cdem.terrain.heights import Grid
@@ -160,7 +166,7 @@ def screen(
         out.shake(quake)
     if chances is not None and columns is not None:
         out.sample(chances, columns, stride, workers)
-    out.write()
+    out.tell()
     out.confirm(confirm, workers)
     out.end()
 
@@ -217,56 +223,52 @@ class _Results:
         self.shaken: Shaken | None = None
         self.chance: Probability | None = None
         self.confirmed: list[Confirmed] = []
+        self.paths: list[Path] = []
 
     def begin(self, notes: list[str]) -> None:
-        """Print what was found."""
-        from cdem.screening import report
+        """Print and write what was found."""
+        from cdem.screening import products, report
 
         self._print(report.text(self.found, self.planes, notes, self.system))
+        path = self.folder / "fos.png"
+        self._save(products.maps_of(self.found), lambda: [products.draw(self.found, path)])
 
     def shake(self, quake: Earthquake) -> None:
-        """Compute and print yield accelerations and displacements."""
-        from cdem.screening import report
+        """Compute, print and write yield accelerations and displacements."""
+        from cdem.screening import products, report
         from cdem.screening.shaking import shake
 
-        self.shaken = shake(self.found, quake)
-        self._print(report.shaken_text(self.shaken))
+        shaken = self.shaken = shake(self.found, quake)
+        self._print(report.shaken_text(shaken))
+        path = self.folder / "newmark.png"
+        maps = products.maps_of_quake(shaken)
+        self._save(maps, lambda: [products.draw_slip(self.found, shaken, path)])
 
     def sample(
         self, uncertain: Uncertain, columns: dict[str, Floats], stride: int, workers: int | None
     ) -> None:
-        """Compute and print the probability of failure."""
+        """Compute, print and write the probability of failure."""
         from cdem._instruction_sets import cores
-        from cdem.screening import report
+        from cdem.screening import chance_files, report
         from cdem.screening.probability import evaluate
 
         how = {"stride": stride, "workers": workers or cores()}
         with _progress() as show:
-            self.chance = evaluate(self.found, self.planes, uncertain, columns, report=show, **how)
-        self._print(report.chance_text(self.chance))
+            chance = evaluate(self.found, self.planes, uncertain, columns, report=show, **how)
+        self.chance = chance
+        self._print(report.chance_text(chance))
+        self.paths.append(chance_files.write_samples(chance, self.folder / "samples.csv"))
+        maps = [chance_files.map_of(chance)]
+        self._save(maps, lambda: chance_files.draw_chance(self.found, chance, self.folder))
 
-    def write(self) -> None:
-        """Write maps, bodies, tables and pictures; a lack of matplotlib is only a message."""
-        from cdem.screening import chance_files, products
-
-        found, folder = self.found, self.folder
-        maps = products.maps_of(found, self.shaken)
-        if self.chance is not None:
-            maps.append(chance_files.map_of(self.chance))
-        paths = products.write_maps(maps, found.ground, folder, self.system)
-        paths.append(self._write_bodies())
-        if self.chance is not None:
-            paths.append(chance_files.write_samples(self.chance, folder / "samples.csv"))
-        try:
-            paths.append(products.draw(found, folder / "fos.png"))
-            if self.shaken is not None:
-                paths.append(products.draw_slip(found, self.shaken, folder / "newmark.png"))
-            if self.chance is not None:
-                paths += chance_files.draw_chance(found, self.chance, folder)
-        except CdemError as error:
-            print(f"no picture: {error}", file=sys.stderr)
+    def tell(self) -> None:
+        """Print the paths of all files, and name those of earlier commands."""
         if not self.as_json:
-            print_paths(paths)
+            print_paths(self.paths)
+        there = [self.folder / name for name in OPTIONAL]
+        old = [path.name for path in there if path.exists() and path not in self.paths]
+        if old:
+            print(f"warning: left from an earlier command: {', '.join(old)}", file=sys.stderr)
 
     def confirm(self, count: int, workers: int | None) -> None:
         """Compute the worst bodies, and add them to the list of bodies."""
@@ -290,6 +292,19 @@ class _Results:
             facts["probability"] = report.chance_facts(self.chance)
         facts["confirmed"] = [report.confirmed_facts(one) for one in self.confirmed]
         print(json.dumps(facts, indent=2))
+
+    def _save(self, maps: list[Map], draw: Callable[[], list[Path]]) -> None:
+        """Write maps, bodies and pictures; a lack of matplotlib is only a message."""
+        from cdem.screening import products
+
+        self.paths += products.write_maps(maps, self.found.ground, self.folder, self.system)
+        bodies = self._write_bodies()
+        if bodies not in self.paths:
+            self.paths.append(bodies)
+        try:
+            self.paths += draw()
+        except CdemError as error:
+            print(f"no picture: {error}", file=sys.stderr)
 
     def _write_bodies(self) -> Path:
         from cdem.screening import products

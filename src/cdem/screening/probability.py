@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import multiprocessing
+import time
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
@@ -11,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from cdem.run.progress import clock
 from cdem.screening.bodies import Ground, Limits, batches
 from cdem.screening.fos_map import FosMap, screen_coarsely
 from cdem.screening.planes import JointPlane
@@ -151,13 +153,16 @@ def _searched(
     shape, count = found.factor.shape, len(samples)
     hits, covered = np.zeros(shape, np.int64), np.isfinite(found.factor)
     lowest, unstable = np.full(count, np.nan), np.zeros(count)
+    start = time.monotonic()
     for number, (least, bits, known) in enumerate(_searches(found, samples, stride, workers)):
         hit = np.unpackbits(bits, count=found.factor.size).reshape(shape).astype(bool)
         covered |= np.unpackbits(known, count=found.factor.size).reshape(shape).astype(bool)
         hits += hit
         lowest[number], unstable[number] = least, hit.mean()
         if report:
-            report("searches, one for each sample", (number + 1) / count)
+            done = (number + 1) / count
+            left = clock((time.monotonic() - start) * (1 / done - 1))
+            report(f"{number + 1:,} of {count:,} searches, {left} left", done)
     share = np.where(covered, hits / count, np.nan)
     nothing = np.full((len(found.bodies), 3), np.nan)
     worst = np.full(count, np.nan)

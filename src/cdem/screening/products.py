@@ -63,10 +63,10 @@ Map = tuple[str, NDArray, str, str]
 """Name of a file without its ending, values, meaning, unit."""
 
 
-def maps_of(found: FosMap, shaken: Shaken | None = None) -> list[Map]:
-    """The maps of a screening, and of an earthquake."""
+def maps_of(found: FosMap) -> list[Map]:
+    """The maps of a screening."""
     plane = found.profiles.factor
-    maps: list[Map] = [
+    return [
         ("fos", found.factor, "least factor of safety of bodies", "1"),
         ("fos_volume", found.volume, "volume of that body", "m3"),
         (
@@ -77,14 +77,16 @@ def maps_of(found: FosMap, shaken: Shaken | None = None) -> list[Map]:
         ),
         ("fos_plane", plane, "plane failure per metre of width, free sides", "1"),
     ]
-    if shaken is not None:
-        maps += [
-            ("fos_yield", shaken.yields, "least yield acceleration of bodies", "g"),
-            ("fos_newmark", shaken.slip, "largest permanent displacement of bodies", "m"),
-            ("fos_plane_yield", shaken.plane_yields, "yield acceleration of profiles", "g"),
-            ("fos_plane_newmark", shaken.plane_slip, "permanent displacement of profiles", "m"),
-        ]
-    return maps
+
+
+def maps_of_quake(shaken: Shaken) -> list[Map]:
+    """The maps of an earthquake."""
+    return [
+        ("fos_yield", shaken.yields, "least yield acceleration of bodies", "g"),
+        ("fos_newmark", shaken.slip, "largest permanent displacement of bodies", "m"),
+        ("fos_plane_yield", shaken.plane_yields, "yield acceleration of profiles", "g"),
+        ("fos_plane_newmark", shaken.plane_slip, "permanent displacement of profiles", "m"),
+    ]
 
 
 def write_maps(maps: Sequence[Map], ground: Ground, folder: Path, system: str | None) -> list[Path]:
