@@ -18,6 +18,7 @@ FOLDERS = {
     "mesh": "elements, blocks, faces, edges; mesh files",
     "joints": "joint sets cut bodies into blocks",
     "terrain": "maps and grids to a meshed site",
+    "outcrop": "point clouds of rock faces to facets and joints",
     "model": "from a case to the arrays of the core",
     "ranks": "a model shared out to processes, its parts, and the whole again",
     "run": "stages, progress, result folder, resume",

@@ -7,7 +7,7 @@ import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -25,6 +25,7 @@ OPTIONAL = (
 if TYPE_CHECKING:
     from cdem.joints.kinematics import Slope
     from cdem.joints.survey import Survey
+    from cdem.outcrop.survey import OutcropSurvey
     from cdem.screening.bodies import Limits
     from cdem.screening.confirm import Confirmed
     from cdem.screening.fos_map import FosMap
@@ -36,15 +37,36 @@ if TYPE_CHECKING:
     from cdem.screening.uncertain import Uncertain
     from cdem.terrain.heights import Grid
 
+Table = Annotated[
+    Path, typer.Argument(metavar="TABLE.csv", help="dip, dip direction, ...; or a point cloud.")
+]
+SetsFile = Annotated[
+    Path | None,
+    typer.Option(
+        "--output", "-o", help="Sets for a case, with a picture. Default TABLE.yaml, here."
+    ),
+]
+Resolution = Annotated[
+    str | None, typer.Option(metavar="M", help="Distance of points kept; default from the cloud.")
+]
+Angle = Annotated[
+    float | None,
+    typer.Option(metavar="DEG", help="Normals in a facet differ from its own by less. Default 12."),
+]
+Smallest = Annotated[
+    str | None, typer.Option(metavar="M2", help="Smallest area of a facet; default 50 points.")
+]
+
 
 def joints(
-    table: Annotated[Path, typer.Argument(metavar="TABLE.csv", help="dip, dip direction, ...")],
-    output: Annotated[
-        Path | None,
-        typer.Option(
-            "--output", "-o", help="Sets for a case, with a picture. Default TABLE.yaml, here."
-        ),
-    ] = None,
+    table: Table,
+    output: SetsFile = None,
+    extract: Annotated[
+        bool, typer.Option("--extract", help="Find the joints in a point cloud of an outcrop.")
+    ] = False,
+    resolution: Resolution = None,
+    angle: Angle = None,
+    smallest: Smallest = None,
     slope: Annotated[
         str | None,
         typer.Option(
@@ -73,25 +95,114 @@ def joints(
     force: Force = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
 ) -> None:
-    """Find the sets among measured joints, and joints that may slide or topple on a slope."""
-    from cdem.joints.measured import read_measured
-    from cdem.joints.survey import Survey
+    """Find the sets among measured joints, and joints that may slide or topple on a slope.
 
+    With --extract the joints are flat parts of a point cloud (.las, .laz, .ply, .xyz ...).
+    """
     face = _slope(slope, friction, lateral)
-    along = None if scanline is None else _plane("--scanline", scanline)[::-1]
-    if length is not None:
-        _within("--length", length, 1e-6, 1e6)
     path = output or Path(f"{table.stem}.yaml")
     if path.suffix not in (".yaml", ".yml"):
         raise typer.BadParameter(f"the sets are written as YAML: name a .yaml file, not {path}")
-    if path.exists() and not (overwrite or force):  # a user may have edited its strengths
-        raise CaseError(f"{path}: exists already; use --overwrite or name another file with -o")
-    measured = read_measured(table, along)
-    survey = Survey.of(table, measured, count=sets, length=length, slope=face)
-    written = _write_survey(survey, path)
-    print(json.dumps(survey.as_dict(), indent=2) if as_json else survey.text())
+    if extract:
+        if scanline is not None or length is not None:
+            raise typer.BadParameter("--scanline and --length belong to tables, not to --extract")
+        sizes = _sizes(resolution, angle, smallest)
+        _refuse_existing([path, _facets_of(path)], overwrite or force)
+        text, facts, written = _extract(table, path, sizes, sets, face)
+    else:
+        if not (resolution is angle is smallest is None):
+            raise typer.BadParameter("--resolution, --angle and --smallest belong to --extract")
+        _refuse_existing([path], overwrite or force)
+        text, facts, written = _measured(table, path, scanline, length, sets, face)
+    print(json.dumps(facts, indent=2) if as_json else text)
     if not as_json:
         print_paths(written)
+
+
+def _refuse_existing(paths: list[Path], replace: bool) -> None:
+    """Refuse to replace files: a user may have edited strengths."""
+    for path in paths:
+        if path.exists() and not replace:
+            raise CaseError(
+                f"{path}: exists already; use --overwrite or name another file with -o"
+            )
+
+
+def _measured(
+    table: Path,
+    path: Path,
+    scanline: str | None,
+    length: float | None,
+    sets: int | None,
+    face: Slope | None,
+) -> tuple[str, dict[str, Any], list[Path]]:
+    """Find the sets of a table; returns text, facts and the files written."""
+    from cdem.joints.measured import read_measured
+    from cdem.joints.survey import Survey
+
+    along = None if scanline is None else _plane("--scanline", scanline)[::-1]
+    if length is not None:
+        _within("--length", length, 1e-6, 1e6)
+    survey = Survey.of(table, read_measured(table, along), count=sets, length=length, slope=face)
+    return survey.text(), survey.as_dict(), _write_survey(survey, path)
+
+
+def _sizes(resolution: str | None, angle: float | None, smallest: str | None) -> dict[str, float]:
+    """Options of an extraction that are given."""
+    sizes = {}
+    if resolution is not None:
+        sizes["resolution"] = _number("--resolution", resolution, "m")
+    if angle is not None:
+        _within("--angle", angle, 1, 45)
+        sizes["angle"] = angle
+    if smallest is not None:
+        sizes["smallest"] = _number("--smallest", smallest, "m2")
+    return sizes
+
+
+def _facets_of(path: Path) -> Path:
+    return path.with_suffix(".facets.csv")
+
+
+def _extract(
+    cloud: Path, path: Path, sizes: dict[str, float], sets: int | None, face: Slope | None
+) -> tuple[str, dict[str, Any], list[Path]]:
+    """Find the joints of a point cloud; returns text, facts and the files written."""
+    from cdem.outcrop.cloud_files import read_outcrop
+    from cdem.outcrop.extraction import extract
+    from cdem.outcrop.facet_table import write_facets
+    from cdem.outcrop.survey import OutcropSurvey
+    from cdem.run.progress import line
+
+    read = read_outcrop(cloud)
+    tty = sys.stderr.isatty()
+    with line(silent=not tty, tty=tty) as show:
+        report = {} if show is None else {"tell": lambda words, part: show("", words, part)}
+        try:
+            found = extract(read.points, **sizes, **report)
+        except CaseError as error:
+            raise CaseError(f"{cloud}: {error}") from None
+    table = _facets_of(path)
+    try:
+        outcrop = OutcropSurvey.of(cloud, found, count=sets, slope=face)
+    except CaseError as error:
+        write_facets(found.facets, table, read.origin, None)
+        raise CaseError(f"{error} of {table}, which has the facets, and read it") from None
+    written = _write_survey(outcrop.survey, path)
+    written.append(write_facets(found.facets, table, read.origin, outcrop))
+    written += _draw_facets(outcrop, table.with_suffix(".png"))
+    notes = "".join(f"note: {note}\n" for note in read.notes)
+    return notes + outcrop.text(), outcrop.as_dict() | {"notes": read.notes}, written
+
+
+def _draw_facets(outcrop: OutcropSurvey, path: Path) -> list[Path]:
+    """Draw the facets; a lack of matplotlib was told with the other picture."""
+    from cdem.output import facet_picture
+
+    try:
+        return [facet_picture.draw(outcrop, path)]
+    except CdemError:
+        return []
 
 
 def _slope(face: str | None, friction: float | None, lateral: float) -> Slope | None:

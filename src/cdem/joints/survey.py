@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
@@ -27,17 +28,23 @@ class Survey:
         source: Name of its file.
         measured: The joints.
         fit: Their sets.
-        frequencies: Spacing of each set; None without scanlines.
+        frequencies: Spacing of each set, None for a set without; None without scanlines.
         slope: The slope, if one is given.
         shares: Fractions that may fail on it.
+        remarks: Comments for the file of sets.
     """
 
     source: str
     measured: Measured
     fit: Fit
-    frequencies: list[Frequency] | None
+    frequencies: Sequence[Frequency | None] | None
     slope: Slope | None
     shares: Shares | None
+    remarks: Sequence[str] = ()
+
+    def frequency(self, k: int) -> Frequency | None:
+        """Spacing of a set by its place, if it has one."""
+        return self.frequencies[k] if self.frequencies else None
 
     @classmethod
     def of(
@@ -82,7 +89,8 @@ class Survey:
         for k, s in enumerate(self.fit.sets):
             facts: dict[str, Any] = {"name": s.name, "dip": s.dip, "dip_direction": s.dip_direction}
             facts |= {"kappa": s.kappa, "a95": s.a95, "share": s.share}
-            sets.append(facts | (asdict(self.frequencies[k]) if self.frequencies else {}))
+            dense = self.frequency(k)
+            sets.append(facts | (asdict(dense) if dense else {}))
         out: dict[str, Any] = {"joints": len(self.measured.dip), "sets": sets}
         out |= {"background": self.fit.background, "bic": self.fit.bic}
         out["slope"] = asdict(self.slope) if self.slope else None
@@ -111,12 +119,11 @@ class Survey:
         for k, s in enumerate(sets):
             row = f"  {s.name:<{width}}  {plane_text(s.dip, s.dip_direction):>13}  "
             row += f"{100 * s.share:3.0f} %  {s.kappa:6.1f}  {s.a95:5.1f}"
-            if self.frequencies:
-                f = self.frequencies[k]
+            if f := self.frequency(k):
                 row += f"  {f.spacing:6.3g} m  {f.p32:6.3g}  {f.count:6.0f}"
             lines.append(row)
         for s, f in zip(sets, self.frequencies or [], strict=False):
-            if f.blind:
+            if f and f.blind:
                 angle = np.degrees(np.arcsin(LEAST_SINE))
                 lines.append(
                     f"note: {s.name} lies within {angle:.1f} deg of the scanlines, which hardly "
@@ -153,18 +160,19 @@ class Survey:
         lines = [
             f"# {self._headline()}",
             f"# from {self.source}. Copy these lines into a case; cdem screen reads them too.",
+            *(f"# {remark}" for remark in self.remarks),
             "model:",
             "  joints:",
         ]
         for k, s in enumerate(self.fit.sets):
             row = f"name: {_quoted(s.name)}, dip: {s.dip:.1f}, dip_direction: {s.dip_direction:.1f}"
-            if self.frequencies:
-                row += f", spacing: {self.frequencies[k].spacing:.4g}"
+            if dense := self.frequency(k):
+                row += f", spacing: {dense.spacing:.4g}"
             row += f", scatter: {{fisher: {s.kappa:.4g}}}"
             lines.append(
                 f"    - {{{row}}}   # a95 {s.a95:.1f} deg, {100 * s.share:.0f} % of joints"
             )
-        if not self.frequencies:
+        if not all(map(self.frequency, range(len(self.fit.sets)))):
             lines.append("    # without a spacing each set is one plane through its origin")
         lines += ["interfaces:", "  pairs:"]
         assumed = "cohesion" if self.slope else "friction and cohesion"
