@@ -139,6 +139,10 @@ def _measured(
     """Find the sets of a table; returns text, facts and the files written."""
     from cdem.joints.measured import read_measured
     from cdem.joints.survey import Survey
+    from cdem.outcrop.cloud_files import CLOUDS_ONLY
+
+    if table.suffix.lower() in CLOUDS_ONLY:
+        raise CaseError(f"{table}: is a point cloud; find the joints in it with --extract")
 
     along = None if scanline is None else _plane("--scanline", scanline)[::-1]
     if length is not None:

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cdem.errors import CaseError
+from cdem.joints.attitudes import NAMES as PLANE_NAMES
 from cdem.joints.attitudes import is_heading as names_planes
 from cdem.joints.disc_files import NAMES
 from cdem.joints.tables import number, plain
@@ -19,6 +20,8 @@ Floats = NDArray[np.float64]
 COMMENTS = ("#", "//", "%")
 MARKS = (";", "\t", ",")
 """Separators of columns, besides spaces; the first that occurs in a line counts."""
+NORMALS = {name for axis in ("nx", "ny", "nz") for name in PLANE_NAMES[axis]}
+"""Headings of normals, which clouds have too."""
 LOOKED_AT = 40
 """First lines in which the points must begin."""
 LONGEST_LINE = 10_000
@@ -79,7 +82,7 @@ def _numbers(words: list[str], least: int) -> bool:
 def _columns(path: Path, head: list[str]) -> list[int]:
     """Places of x, y, z: by their names, else the first three."""
     names = [plain(name) for name in head]
-    if names_planes(head) and not {"nx", "normal_x", "normalx"} & set(names):
+    if names_planes([name for name in head if plain(name) not in NORMALS]):
         raise CaseError(
             f"{path}: is a table of measured joints ({', '.join(head)}); leave out --extract"
         )
