@@ -125,7 +125,8 @@ def thinned_out(outcrop, seed=7):
 
 
 def ledges(width=12.0, rows=16, mean=1.5, density=900.0, noise=0.004, seed=2):
-    """A wall that faces south, with ledges of exponential lengths, cut off at both sides.
+    """A wall with ledges of exponential lengths, cut off at both sides; all dips 30 or 60 deg south
+    or north.
 
     Args:
         width: Of the wall along strike [m].
@@ -136,10 +137,11 @@ def ledges(width=12.0, rows=16, mean=1.5, density=900.0, noise=0.004, seed=2):
         seed: Another one draws others.
 
     Returns:
-        The points [m], and all true lengths of the ledges in the window [m].
+        The points [m], all true lengths of the ledges in the window [m], and of each the length
+        inside and whether its two ends are inside.
     """
     random = np.random.default_rng(seed)
-    depth, rise, parts, lengths = 0.25, 0.5, [], []
+    depth, rise, parts, lengths, inside = 0.25, 0.5, [], [], []
 
     def rectangle(x, y, z):
         low, high = np.array([x, y, z]).T
@@ -162,10 +164,12 @@ def ledges(width=12.0, rows=16, mean=1.5, density=900.0, noise=0.004, seed=2):
                 rectangle((left, right), (-depth, 0), (top, top))
                 rectangle((left, right), (-depth, 0), (bottom, bottom))
                 lengths.append(end - start)
+                inside.append((right - left, start > 0, end < width))
             for side in (start, end):
                 if 0 < side < width:
                     rectangle((side, side), (-depth, 0), (bottom, top))
             at = end
         rectangle((0, width), (0, 0), (top, bottom + rise))
-    x = np.concatenate(parts)
-    return x + noise * random.normal(size=x.shape), np.array(lengths)
+    cosine, sine = np.cos(np.radians(30)), np.sin(np.radians(30))
+    x = np.concatenate(parts) @ np.array([[1, 0, 0], [0, cosine, sine], [0, -sine, cosine]])
+    return x + noise * random.normal(size=x.shape), np.array(lengths), np.array(inside)

@@ -21,6 +21,8 @@ ANGLE = 12.0
 """Default of the largest angle between a point's normal and that of its facet [deg]."""
 FEWEST = 50
 """Fewest points of a facet."""
+FEWEST_INNER = 12
+"""Fewest points of a facet without its rim."""
 NOISES = 3.0
 """Largest distance of a point from its facet, as a multiple of the noise."""
 LEAST_TOLERANCE = 0.5
@@ -78,7 +80,7 @@ def extract(
     tell("normals", 0.2)
     found = normals_of(x)
     tolerance = max(NOISES * found.noise, LEAST_TOLERANCE * size)
-    rules = Rules(angle, tolerance, FEWEST)
+    rules = Rules(angle, tolerance, FEWEST_INNER)
     tell("facets", 0.5)
     core, planes = grow(x, found, rules)
     core, planes = merge(x, found, core, planes, rules)
@@ -90,11 +92,12 @@ def extract(
     tell("areas", 0.8)
     facets = measure(x, core, take_rims(x, found, core, planes, tolerance))
     least = FEWEST * size**2 if smallest is None else smallest
-    large = np.flatnonzero(facets.areas >= least)
+    counts = np.array([len(members) for members in facets.members])
+    large = np.flatnonzero((facets.areas >= least) & (counts >= FEWEST))
     if not len(large):
         raise CaseError(
-            f"no facet has {least:.3g} m2; the largest has {facets.areas[0]:.3g} m2: give a "
-            "smaller --smallest"
+            f"no facet has {least:.3g} m2 and {FEWEST} points; the largest has "
+            f"{facets.areas[0]:.3g} m2 and {counts[0]}: give a smaller --smallest or --resolution"
         )
     return Extraction(
         x, facets.some(large), size, found.noise, tolerance, angle, least, thinned.notes

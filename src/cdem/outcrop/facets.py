@@ -16,8 +16,10 @@ Indices = NDArray[np.intp]
 LONGEST_EDGE = 3.5
 """Longest edge of the triangles that cover a facet, as a multiple of the mean spacing of its
 points: larger gaps are holes."""
-RIM = 0.35
+RIM = 0.4
 """Strip between the outermost points of a facet and its edge, as a multiple of that spacing."""
+LEVEL = float(np.cos(np.radians(10)))
+"""Upward part of the normal above which a facet has no clear strike."""
 OUTLIER = 3.0
 """Points farther from the plane than this multiple of their deviation do not count in its fit."""
 
@@ -28,16 +30,18 @@ class Facets:
 
     Attributes:
         centers: Means of their points [m], shape (facets, 3).
-        normals: Upward unit normals, shape (facets, 3).
+        frames: Unit vectors along the length and the width, and the upward normal, as rows; shape
+            (facets, 3, 3). Length is along strike, width along dip; of facets that dip less than
+            10 deg, which have no clear strike, length is the longest direction.
         areas: [m2], shape (facets,).
-        lengths: Extents along strike and along dip [m], shape (facets, 2).
+        lengths: Length and width [m], shape (facets, 2).
         rms: Deviation of the points from the plane [m], shape (facets,).
         tilt: Standard error of the normal [rad], shape (facets,).
         members: Numbers of the points of each.
     """
 
     centers: Floats
-    normals: Floats
+    frames: Floats
     areas: Floats
     lengths: Floats
     rms: Floats
@@ -47,14 +51,19 @@ class Facets:
     def __len__(self) -> int:
         return len(self.areas)
 
+    @property
+    def normals(self) -> Floats:
+        """Upward unit normals, shape (facets, 3)."""
+        return self.frames[:, 2]
+
     def some(self, chosen: Indices) -> Facets:
         """Some of the facets, by their numbers."""
-        arrays = (self.centers, self.normals, self.areas, self.lengths, self.rms, self.tilt)
+        arrays = (self.centers, self.frames, self.areas, self.lengths, self.rms, self.tilt)
         return Facets(*(a[chosen] for a in arrays), [self.members[k] for k in chosen.tolist()])
 
 
 def axes(normal: Floats) -> Floats:
-    """Unit vectors along strike, down the dip and along the normal, as rows; right-handed.
+    """Unit vectors along strike, up the dip and along the normal, as rows; right-handed.
 
     Strike is 90 deg left of the dip direction; of a level plane it points north.
     """
@@ -78,10 +87,10 @@ def measure(points: Floats, core: NDArray[np.int32], label: NDArray[np.int32]) -
     starts = np.searchsorted(label[order], np.arange(label.max() + 2))
     members = [order[a:b] for a, b in zip(starts[:-1], starts[1:], strict=True)]
     rows = [_fit(points[m[core[m] >= 0]]) for m in members]
-    sizes = [_extent(points[m], axes(row[1])) for m, row in zip(members, rows, strict=True)]
+    sizes = [_extent(points[m], row[1]) for m, row in zip(members, rows, strict=True)]
     facets = Facets(
         np.array([row[0] for row in rows]).reshape(-1, 3),
-        np.array([row[1] for row in rows]).reshape(-1, 3),
+        np.array([size[2] for size in sizes]).reshape(-1, 3, 3),
         np.array([size[0] for size in sizes]),
         np.array([size[1] for size in sizes]).reshape(-1, 2),
         np.array([row[2] for row in rows]),
@@ -110,17 +119,22 @@ def _fit(x: Floats) -> tuple[Floats, Floats, float, float]:
     return center, normal, rms, tilt
 
 
-def _extent(x: Floats, frame: Floats) -> tuple[float, Floats]:
-    """Area [m2] and extents along the first two axes [m] of points near a plane."""
+def _extent(x: Floats, normal: Floats) -> tuple[float, Floats, Floats]:
+    """Area [m2], length and width [m], and frame of points near a plane; see `Facets`."""
+    frame = axes(normal)
     flat = (x - x.mean(axis=0)) @ frame[:2].T
-    return area_of(flat), np.ptp(flat, axis=0)
+    if normal[2] > LEVEL:
+        longest = np.linalg.eigh(flat.T @ flat)[1][:, 1]
+        turn = np.array([longest, [-longest[1], longest[0]]])
+        flat, frame = flat @ turn.T, np.concatenate([turn @ frame[:2], frame[2:]])
+    return area_of(flat), np.ptp(flat, axis=0), frame
 
 
 def area_of(flat: Floats) -> float:
     """Area of a patch of a plane, by points drawn on it [m2].
 
     Delaunay triangles without long edges (an alpha shape), and the strip between the outermost
-    points and the edge of the patch, which is as wide as a third of the spacing of points.
+    points and the edge of the patch, which is 0.4 spacings of the points wide.
 
     Args:
         flat: Points in the plane [m], shape (points, 2).

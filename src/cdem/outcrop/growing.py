@@ -107,7 +107,8 @@ class _Growth:
 def grow(points: Floats, found: Normals, rules: Rules) -> tuple[Ints, list[Plane]]:
     """Divide a cloud into flat regions.
 
-    A region begins at the flattest free point and takes its neighbours while their normals lie
+    A region begins at the flattest free point, whose neighbours deviate from their plane by half the
+    tolerance at most, and takes its neighbours while their normals lie
     within an angle of the normal of the region and they lie near its plane, which is fitted anew
     as it grows (after Rabbani et al. 2006, who compare neighbours with one another).
 
@@ -122,7 +123,8 @@ def grow(points: Floats, found: Normals, rules: Rules) -> tuple[Ints, list[Plane
     growth = _Growth(points, found, rules)
     idle = np.zeros(len(points), bool)  # points of regions that stayed too small start none
     planes: list[Plane] = []
-    for seed in np.argsort(found.curvature, kind="stable").tolist():
+    seeds = np.argsort(found.deviation, kind="stable")
+    for seed in seeds[found.deviation[seeds] <= rules.tolerance / 2].tolist():
         if growth.label[seed] >= 0 or idle[seed]:
             continue
         plane, members = growth.region(seed, len(planes))

@@ -15,19 +15,15 @@ from cdem.case import reader_process
 from cdem.errors import CaseError
 from cdem.terrain.cloud_sums import CHUNK, MEND
 
-MOST_READ = 20_000_000
-"""Most points that are read; of more, every second, third ... one."""
 
-
-def _read(path: Path, asked: Any) -> reader_process.Arrays:
-    """All points [m], whatever their class; and `every`, of which one was taken."""
+def read(path: Path, asked: dict[str, Any]) -> reader_process.Arrays:
+    """Points of all classes [m], ``most`` at most; and ``every``, of which one was taken."""
     import laspy
 
-    del asked
     try:
         with laspy.open(path) as file:
             factor = _metres(path, file.header.parse_crs())
-            every = -(-file.header.point_count // MOST_READ) or 1
+            every = -(-file.header.point_count // asked["most"]) or 1
             parts, start = [], 0
             for part in file.chunk_iterator(CHUNK):
                 xyz = np.column_stack([part.x, part.y, part.z]).astype(float)
@@ -63,4 +59,4 @@ if __name__ == "__main__":
     import lazrs  # noqa: F401
     import pyproj  # noqa: F401
 
-    reader_process.answer(_read, MEND)
+    reader_process.answer(read, MEND)

@@ -25,14 +25,13 @@ class Normals:
 
     Attributes:
         normals: Unit normals, of either sign, shape (points, 3).
-        curvature: Share of the smallest of the three variances [1], shape (points,).
+        deviation: Of the neighbours from their plane [m], shape (points,).
         neighbours: Numbers of the nearest points, the point itself first, shape (points, 24).
-        noise: Deviation of points from the plane of their neighbours [m], median of the flatter
-            half.
+        noise: Median of the smaller half of the deviations [m]: that of flat parts.
     """
 
     normals: Floats
-    curvature: Floats
+    deviation: Floats
     neighbours: Ints
     noise: float
 
@@ -56,8 +55,8 @@ def normals_of(points: Floats, every: int = 1) -> Normals:
     tree = scipy_spatial().cKDTree(points)
     places = points[::every]
     count = min(NEIGHBOURS, len(points))
-    normals, curvature = np.empty((len(places), 3)), np.empty(len(places))
-    neighbours, variance = np.empty((len(places), count), np.int32), np.empty(len(places))
+    normals, deviation = np.empty((len(places), 3)), np.empty(len(places))
+    neighbours = np.empty((len(places), count), np.int32)
     for start in range(0, len(places), CHUNK):
         part = slice(start, start + CHUNK)
         near = tree.query(places[part], count, workers=-1)[1]
@@ -66,7 +65,6 @@ def normals_of(points: Floats, every: int = 1) -> Normals:
         away -= away.mean(axis=1, keepdims=True)
         values, vectors = np.linalg.eigh(np.einsum("nki,nkj->nij", away, away) / (count - 3))
         normals[part] = vectors[:, :, 0]
-        variance[part] = np.maximum(values[:, 0], 0)
-        curvature[part] = variance[part] / np.maximum(values.sum(axis=1), 1e-300)
-    flat = variance[curvature <= np.median(curvature)]
-    return Normals(normals, curvature, neighbours, float(np.sqrt(np.median(flat))))
+        deviation[part] = np.sqrt(np.maximum(values[:, 0], 0))
+    noise = float(np.percentile(deviation, 25))
+    return Normals(normals, deviation, neighbours, noise)

@@ -15,13 +15,16 @@ Floats = NDArray[np.float64]
 MOST_POINTS = 1_000_000
 """Most points that are kept."""
 PER_NEIGHBOUR = 2.0
-"""Voxel size, as a multiple of the median distance to the nearest neighbour: the mean spacing."""
+"""Voxel size, as a multiple of the median distance to the nearest neighbour: the mean spacing of
+points drawn at random."""
 PER_NOISE = 2.5
 """Smallest voxel size, as a multiple of the noise: the normals of 24 neighbours keep 4 deg."""
 COARSER = 1.25
 """Factor of a step to larger voxels."""
 SAMPLE = 20_000
 """Most points whose distances and noise are looked at."""
+COPIES = 16
+"""Most points at one place that do not hide its neighbours."""
 LEAST_POINTS = 100
 
 
@@ -87,12 +90,11 @@ def _mean_spacing(points: Floats) -> float:
     """Distance of neighbours in a cloud without its duplicates [m]."""
     tree = scipy_spatial().cKDTree(points)
     some = points[:: max(1, len(points) // SAMPLE)]
-    for count in (2, 4, 8, 16):  # further neighbours where most points are duplicates
-        away = tree.query(some, count, workers=-1)[0][:, -1]
-        nearest = float(np.median(away))
-        if nearest > 0:
-            return PER_NEIGHBOUR * nearest / float(np.sqrt(count - 1))
-    raise CaseError("most points of the cloud lie at one place; give --resolution")
+    away = tree.query(some, min(COPIES, len(points)), workers=-1)[0]
+    nearest = np.where(away > 0, away, np.inf).min(axis=1)  # a copy at the same place does not count
+    if not np.isfinite(median := float(np.median(nearest))):
+        raise CaseError("most points of the cloud lie at one place; give --resolution")
+    return PER_NEIGHBOUR * median
 
 
 def _too_noisy(points: Floats, size: float) -> bool:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from cdem.outcrop.facets import Facets, axes
+from cdem.outcrop.facets import Facets
 from cdem.outcrop.normals import scipy_spatial
 
 Floats = NDArray[np.float64]
@@ -17,9 +17,9 @@ STRIP = 1.5
 """Width of the strip at the end of a facet, as a multiple of the resolution."""
 BEYOND = 4.0
 """How far the cloud must go on beyond an end that is seen, as a multiple of the resolution."""
-BOX = np.array([BEYOND, BEYOND])
+BOX = np.array([BEYOND + STRIP / 2, BEYOND])
 SIDES = 2.5
-"""Width of the sides of a strip, where other faces touch it, as a multiple of the resolution."""
+"""Width of the rim of a facet, which may belong to other faces, as a multiple of the resolution."""
 LEAST_BEYOND = 3
 """Points of the cloud beyond an end that is seen."""
 
@@ -66,10 +66,10 @@ def mean_length(lengths: Floats, seen: Bools) -> Length:
 
 
 def ends_seen(points: Floats, facets: Facets, resolution: float) -> Bools:
-    """Whether the cloud goes on beyond the ends of facets along strike.
+    """Whether the cloud goes on beyond both ends of the length of facets.
 
     An end is seen if, beside the strip of the outermost points of the facet, other points of the
-    cloud lie farther along strike, or stand on the middle of that strip: a step. Else the facet
+    cloud lie farther along, or stand on the middle of that strip: a step. Else the facet
     ends where the cloud ends, or at a shadow.
 
     Args:
@@ -78,19 +78,20 @@ def ends_seen(points: Floats, facets: Facets, resolution: float) -> Bools:
         resolution: Distance of neighbours [m].
 
     Returns:
-        Shape (facets, 2): at the end against the strike direction, at the end along it.
+        Shape (facets, 2): at the end against the first vector of its frame, at the end along it.
     """
     tree = scipy_spatial().cKDTree(points)
     out = np.zeros((len(facets), 2), bool)
     for k, members in enumerate(facets.members):
-        frame = axes(facets.normals[k])
+        frame = facets.frames[k]
         flat = (points[members] - facets.centers[k]) @ frame.T
         for side, sign in enumerate((-1.0, 1.0)):
             turned = frame * [[sign], [sign], [1]]
             strip = flat[flat[:, 0] * sign >= (flat[:, 0] * sign).max() - STRIP * resolution]
             strip = strip * [sign, sign, 1]
             middle = (strip.max(axis=0) + strip.min(axis=0)) / 2
-            reach = float(np.linalg.norm([np.ptp(strip[:, 1]) / 2 + resolution, *BOX * resolution]))
+            half = np.ptp(strip[:, 1]) / 2 + SIDES * resolution
+            reach = float(np.linalg.norm([half, *BOX * resolution]))
             place = facets.centers[k] + middle @ turned
             beside = np.setdiff1d(tree.query_ball_point(place, reach), members)
             away = (points[beside] - facets.centers[k]) @ turned.T
@@ -105,7 +106,7 @@ def _goes_on(away: Floats, strip: Floats, resolution: float) -> bool:
     u, v, w = away.T
     close = np.abs(w) <= BEYOND * resolution
     ahead = close & (u > end + resolution / 2) & (u <= end + BEYOND * resolution)
-    ahead &= (v >= low - resolution) & (v <= high + resolution)
+    ahead &= (v >= low - SIDES * resolution) & (v <= high + SIDES * resolution)
     step = close & (np.abs(u - end) <= resolution)
     step &= (v >= low + SIDES * resolution) & (v <= high - SIDES * resolution)
     return bool(ahead.sum() >= LEAST_BEYOND or step.sum() >= LEAST_BEYOND)
