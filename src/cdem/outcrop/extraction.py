@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from cdem.errors import CaseError
 from cdem.outcrop.facets import Facets, measure
 from cdem.outcrop.growing import Rules, grow, take_rims
-from cdem.outcrop.merging import merge
+from cdem.outcrop.merging import merged
 from cdem.outcrop.normals import normals_of
 from cdem.outcrop.thinning import thin
 
@@ -83,14 +83,15 @@ def extract(
     rules = Rules(angle, tolerance, FEWEST_INNER)
     tell("facets", 0.5)
     core, planes = grow(x, found, rules)
-    core, planes = merge(x, found, core, planes, rules)
     if not planes:
         raise CaseError(
             f"no flat part of {FEWEST} points at a resolution of {size:.3g} m; give a smaller "
             "--resolution or a larger --angle"
         )
     tell("areas", 0.8)
-    facets = measure(x, core, take_rims(x, found, core, planes, tolerance))
+    label = take_rims(x, found, core, planes, tolerance)
+    new = merged(found, label, planes, rules)
+    facets = measure(x, *(np.where(kind >= 0, new[kind], -1) for kind in (core, label)))
     least = FEWEST * size**2 if smallest is None else smallest
     counts = np.array([len(members) for members in facets.members])
     large = np.flatnonzero((facets.areas >= least) & (counts >= FEWEST))

@@ -53,6 +53,16 @@ class Plane:
         self._base, self._sum, self._squares = point, np.zeros(3), np.zeros((3, 3))
         self._next = 10.0
 
+    def deviation_with(self, other: Plane) -> float:
+        """Deviation of the points of both from the plane through all [m]."""
+        shift, count = other._base - self._base, self.count + other.count
+        moved = other._sum + other.count * shift
+        cross = np.outer(other._sum, shift)
+        squares = other._squares + cross + cross.T + other.count * np.outer(shift, shift)
+        mean = (self._sum + moved) / count
+        cov = (self._squares + squares) / count - np.outer(mean, mean)
+        return float(np.sqrt(max(np.linalg.eigvalsh(cov)[0], 0.0)))
+
     def add(self, points: Floats) -> None:
         """Add points; a fifth more than at the last fit makes a new one."""
         x = points - self._base

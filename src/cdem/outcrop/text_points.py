@@ -53,12 +53,14 @@ def read_text_points(path: Path, notes: list[str]) -> Floats:
         elif not _numbers(words, 1):
             head = words
     else:
+        _refuse_table(path, head)
         raise CaseError(
             f"{path}: no line of three numbers among its first {LOOKED_AT}; a cloud has x y z in each"
         )
     if len(head) != len(words):
         head = []
-    at = _columns(path, head)
+    _refuse_table(path, head)
+    at = _columns(head)
     idle = [name or "?" for i, name in enumerate(head) if i not in at]
     if not head and len(words) > 3:
         idle = [f"{len(words) - 3} after x, y, z"]
@@ -79,13 +81,16 @@ def _numbers(words: list[str], least: int) -> bool:
     )
 
 
-def _columns(path: Path, head: list[str]) -> list[int]:
-    """Places of x, y, z: by their names, else the first three."""
-    names = [plain(name) for name in head]
+def _refuse_table(path: Path, head: list[str]) -> None:
     if names_planes([name for name in head if plain(name) not in NORMALS]):
         raise CaseError(
             f"{path}: is a table of measured joints ({', '.join(head)}); leave out --extract"
         )
+
+
+def _columns(head: list[str]) -> list[int]:
+    """Places of x, y, z: by their names, else the first three."""
+    names = [plain(name) for name in head]
     found = [[i for i, name in enumerate(names) if name in NAMES[axis]] for axis in "xyz"]
     if all(len(places) == 1 for places in found):
         return [places[0] for places in found]

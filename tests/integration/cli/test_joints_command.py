@@ -2,12 +2,15 @@
 
 import json
 
+import numpy as np
 import pytest
 from ruamel.yaml import YAML
 from shared.joints import drawn_joints
+from shared.outcrops import blocky
 
 import cdem
 from cdem.joints.directions import dips
+from cdem.joints.disc_files import read_rows
 
 SLOPE = ("--slope", "60/090", "--friction", "30")
 
@@ -62,3 +65,73 @@ def test_mistakes_are_one_message(run_cli, table):
     status, _, err = run_cli("joints", "joints.csv")
     assert status == 1 and err.startswith("joints.yaml: exists already; use --overwrite")
     assert run_cli("joints", "joints.csv", "--overwrite")[0] == 0
+
+
+@pytest.fixture
+def cloud(tmp_path, monkeypatch):
+    """A small outcrop at map coordinates, in a folder with a space."""
+    folder = tmp_path / "an outcrop"
+    folder.mkdir()
+    monkeypatch.chdir(folder)
+    points = blocky(size=4.0, density=900, seed=5).points + [512_000, 5_123_000, 1_200]
+    np.savetxt(folder / "wall.xyz", points, "%.3f")
+    return folder
+
+
+def test_joints_of_a_cloud(run_cli, cloud, quick_pictures):
+    status, out, err = run_cli("joints", "wall.xyz", "--extract", "--sets", "3", *SLOPE)
+    assert (status, err) == (0, "")
+    assert "3 sets" in out and "planar" in out and "facets  planes" in out
+    assert out.endswith("wall.yaml\nwall.png\nwall.facets.csv\nwall.facets.png\n")
+    assert (cloud / "wall.facets.png").read_bytes().startswith(b"\x89PNG")
+    part = YAML(typ="safe").load((cloud / "wall.yaml").read_text())
+    assert len(part["model"]["joints"]) == 3
+    assert 0.3 < part["model"]["joints"][0]["spacing"] < 1.5
+    # the table of facets is one of joints, with the same sets, and one of discs
+    status, out, _ = run_cli("joints", "wall.facets.csv", "-o", "again.yaml", "--json")
+    again = json.loads(out)
+    assert status == 0 and len(again["sets"]) == 3
+    for first, second in zip(part["model"]["joints"], again["sets"], strict=True):
+        assert second["dip"] == pytest.approx(first["dip"], abs=0.1)
+    notes = []
+    rows = read_rows(cloud / "wall.facets.csv", notes)
+    assert len(rows) == again["joints"]
+    assert rows[0][0] == pytest.approx([512_000, 5_123_000, 1_200], abs=3)
+
+
+def test_json_of_a_cloud(run_cli, cloud, quick_pictures):
+    status, out, _ = run_cli("joints", "wall.xyz", "--extract", "--sets", "3", "--json")
+    facts = json.loads(out)
+    assert status == 0 and facts["facets"] > 10 and facts["resolution"] == pytest.approx(0.03, rel=0.2)
+    row = facts["sets"][0]
+    assert row["planes"] > 2 and row["area"] > 1 and 0 < row["persistence"] <= 1
+    assert row["length"]["traces"] == row["facets"] >= row["length"]["seen"] / 2
+
+
+def test_facets_without_sets_are_kept(run_cli, cloud):
+    status, out, err = run_cli("joints", "wall.xyz", "--extract", "--sets", "9")
+    assert status == 1 and out == "" and err.count("\n") == 1
+    assert "in a column 'set' of wall.facets.csv, which has the facets" in err
+    assert (cloud / "wall.facets.csv").read_text().startswith("x,y,z,dip,dip_direction,radius,")
+    assert not (cloud / "wall.yaml").exists()
+
+
+def test_clouds_and_tables_are_told_apart(run_cli, cloud):
+    (cloud / "t.csv").write_text("dip,dip_direction\n3,4\n")
+    assert run_cli("joints", "wall.xyz")[2] == (
+        "wall.xyz: is a point cloud; find the joints in it with --extract\n"
+    )
+    for words, status, told in (
+        (("t.csv", "--extract"), 1, "leave out --extract"),
+        (("t.csv", "--angle", "12"), 2, "belong to --extract"),
+        (("wall.xyz", "--extract", "--scanline", "5/5"), 2, "belong to tables"),
+        (("wall.xyz", "--extract", "--angle", "80"), 2, "--angle must lie in 1 to 45"),
+        (("wall.xyz", "--extract", "--resolution", "-1"), 2, "--resolution"),
+        (("wall.xyz", "--extract", "--resolution", "5 m"), 1, "points are left at a resolution"),
+        (("wall.xyz", "--extract", "--smallest", "1e4"), 1, "no facet has 1e+04 m2"),
+        (("none.laz", "--extract"), 1, "no such file"),
+    ):
+        code, out, err = run_cli("joints", *words)
+        assert (code, out) == (status, "") and told in " ".join(err.split()), words
+    (cloud / "wall.facets.csv").write_text("mine")
+    assert "exists already" in run_cli("joints", "wall.xyz", "--extract")[2]

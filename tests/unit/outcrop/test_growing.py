@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from cdem.outcrop.growing import Plane, Rules, grow, take_rims
-from cdem.outcrop.merging import merge
+from cdem.outcrop.merging import merged
 from cdem.outcrop.normals import normals_of
 
 RULES = Rules(angle=12, tolerance=0.006, points=20)
@@ -20,8 +20,8 @@ def square(count, seed=1):
 def regions(x):
     """Numbers of regions with their rims, and planes."""
     found = normals_of(x)
-    label, planes = merge(x, found, *grow(x, found, RULES), RULES)
-    return take_rims(x, found, label, planes, RULES.tolerance), planes, label
+    core, planes = grow(x, found, RULES)
+    return take_rims(x, found, core, planes, RULES.tolerance), planes, core
 
 
 def test_two_faces_that_meet_in_an_edge():
@@ -50,11 +50,18 @@ def test_a_crack_does_not_part_a_face():
 def test_regions_in_one_plane_are_merged():
     x, found = square(4_000), normals_of(square(4_000))
     halves = (x[:, 0] > 0.5).astype(np.int32)
-    planes = [Plane(np.array([0, 0, 1.0]), x[halves == k].mean(axis=0)) for k in (0, 1)]
-    label, merged = merge(x, found, halves, planes, RULES)
-    assert len(merged) == 1 and (label == 0).all()
-    turned = [planes[0], Plane(np.array([np.sin(0.12), 0, np.cos(0.12)]), planes[1].center)]
-    assert len(merge(x, found, halves, turned, RULES)[1]) == 2
+    planes = [Plane(np.array([0, 0, 1.0]), x[halves == k][0]) for k in (0, 1)]
+    for k, plane in enumerate(planes):
+        plane.add(x[halves == k])
+        plane.fit()
+    both = x - x.mean(axis=0)
+    deviation = np.sqrt(np.linalg.eigvalsh(both.T @ both / len(x))[0])
+    assert planes[0].deviation_with(planes[1]) == pytest.approx(deviation)
+    assert merged(found, halves, planes, RULES).tolist() == [0, 0]
+    strict = Rules(angle=12, tolerance=1.9 * deviation, points=20)
+    assert merged(found, halves, planes, strict).tolist() == [0, 1]
+    planes[1].normal = np.array([np.sin(0.12), 0, np.cos(0.12)])
+    assert merged(found, halves, planes, RULES).tolist() == [0, 1]
 
 
 def test_a_plane_is_fitted_to_its_points():
