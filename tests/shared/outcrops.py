@@ -78,7 +78,7 @@ def blocky(size=6.0, density=800.0, noise=0.005, kappa=None, seed=1, sets=SETS, 
     def rock(index):
         chance = (index * salt).sum(axis=1) * 2654435761 % 1000003 / 1000003
         middle = np.column_stack([m[index[:, k]] for k, m in enumerate(middles)])
-        return np.linalg.solve(means, middle.T).T @ FRONT < rough * (chance - 0.5)
+        return rough * (chance - 0.5) > np.linalg.solve(means, middle.T).T @ FRONT
 
     points, plane = [], []
     for number, normal in enumerate(normals):
@@ -97,9 +97,7 @@ def blocky(size=6.0, density=800.0, noise=0.005, kappa=None, seed=1, sets=SETS, 
     x, plane = np.concatenate(points), np.concatenate(plane)
     x = x + noise * random.normal(size=x.shape)
     order = random.permutation(len(x))
-    return Outcrop(
-        x[order], plane[order], np.array(list(sets))[kind], normals, offset, density
-    )
+    return Outcrop(x[order], plane[order], np.array(list(sets))[kind], normals, offset, density)
 
 
 def thinned_out(outcrop, seed=7):

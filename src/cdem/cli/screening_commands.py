@@ -123,9 +123,7 @@ def _refuse_existing(paths: list[Path], replace: bool) -> None:
     """Refuse to replace files: a user may have edited strengths."""
     for path in paths:
         if path.exists() and not replace:
-            raise CaseError(
-                f"{path}: exists already; use --overwrite or name another file with -o"
-            )
+            raise CaseError(f"{path}: exists already; use --overwrite or name another file with -o")
 
 
 def _measured(
@@ -151,9 +149,9 @@ def _measured(
     return survey.text(), survey.as_dict(), _write_survey(survey, path)
 
 
-def _sizes(resolution: str | None, angle: float | None, smallest: str | None) -> dict[str, float]:
+def _sizes(resolution: str | None, angle: float | None, smallest: str | None) -> dict[str, Any]:
     """Options of an extraction that are given."""
-    sizes = {}
+    sizes: dict[str, Any] = {}
     if resolution is not None:
         sizes["resolution"] = _number("--resolution", resolution, "m")
     if angle is not None:
@@ -169,7 +167,7 @@ def _facets_of(path: Path) -> Path:
 
 
 def _extract(
-    cloud: Path, path: Path, sizes: dict[str, float], sets: int | None, face: Slope | None
+    cloud: Path, path: Path, sizes: dict[str, Any], sets: int | None, face: Slope | None
 ) -> tuple[str, dict[str, Any], list[Path]]:
     """Find the joints of a point cloud; returns text, facts and the files written."""
     from cdem.outcrop.cloud_files import read_outcrop
@@ -181,9 +179,9 @@ def _extract(
     read = read_outcrop(cloud)
     tty = sys.stderr.isatty()
     with line(silent=not tty, tty=tty) as show:
-        report = {} if show is None else {"tell": lambda words, part: show("", words, part)}
+        report = None if show is None else lambda words, part: show("", words, part)
         try:
-            found = extract(read.points, **sizes, **report)
+            found = extract(read.points, **sizes, tell=report)
         except CaseError as error:
             raise CaseError(f"{cloud}: {error}") from None
     table = _facets_of(path)

@@ -65,7 +65,9 @@ def read_clusters(path: Path) -> tuple[Floats, list[str], list[str]]:
     planes = planes[(planes[:, 3] > 0) & (planes[:, 4] > 0)]  # 0: of no set, of no cluster
     if not len(planes):
         raise CaseError(f"{path}: has no cluster with a set")
-    notes = [f"{len(rows):,} points of {len(planes)} clusters, each a joint: x y z set cluster A B C D"]
+    notes = [
+        f"{len(rows):,} points of {len(planes)} clusters, each a joint: x y z set cluster A B C D"
+    ]
     alike = [
         int(k)
         for k in np.unique(planes[:, 3])

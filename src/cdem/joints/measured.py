@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from cdem.errors import CaseError
 from cdem.joints.attitudes import angles, azimuths, is_heading, read_attitudes
+from cdem.joints.cloudcompare import families, prefer_normals
 from cdem.joints.cluster_files import is_clusters, read_clusters
 from cdem.joints.directions import dips, line, poles
 from cdem.joints.tables import Table, number, plain, read_table
@@ -37,8 +38,6 @@ NAMES: dict[str, tuple[str, ...]] = {
     + ("profundidad", "深度", "位置"),
 }
 """Columns beside the columns of planes, and their possible headings, in the form of `plain`."""
-FACETS = {"horiz_ext", "vert_ext", "normalx", "normaly", "normalz"}
-"""Headings by which a table is one of facets of CloudCompare."""
 
 
 @dataclass
@@ -82,14 +81,10 @@ def read_measured(path: Path, scanline: tuple[float, float] | None = None) -> Me
         CaseError: It cannot be read, a column is missing or ambiguous, or a value is out of range.
     """
     if is_clusters(path):
-        normals, names, notes = read_clusters(path)
-        if scanline is not None:
-            raise CaseError(f"{path}: has clusters of a cloud, no scanline; leave it out")
-        return Measured(*dips(normals), names, notes=notes)
+        return _of_clusters(path, scanline)
     table = read_table(path, "table of joints", _is_heading)
-    if not is_heading(table.head) and (cloud := _like_a_cloud(table)):
-        raise CaseError(f"{path}: {cloud}; for a point cloud use --extract")
-    _prefer_normals(table)
+    _refuse_cloud(table)
+    prefer_normals(table)
     if {"slopeangle", "dip"} <= {plain(name) for name in table.head}:
         raise CaseError(
             f"{path}: has both dip and slopeangle, so dip is an azimuth; rename these columns to "
@@ -97,66 +92,64 @@ def read_measured(path: Path, scanline: tuple[float, float] | None = None) -> Me
         )
     table.find(NAMES)
     dip, direction, used = read_attitudes(table)
-    at = table.at
-    trend, plunge, position = None, None, None
-    if "trend" in at and "trend" not in used:
-        if "plunge" not in at:
-            raise CaseError(f"{path}: scanlines need both columns, trend and plunge")
-        trend, plunge = azimuths(table, "trend"), angles(table, "plunge", -90, 90)
-    if scanline is not None:
-        if trend is not None:
-            raise CaseError(f"{path}: has columns of scanlines; leave out the scanline")
-        trend, plunge = (np.full(len(dip), angle) for angle in scanline)
-    if "position" in at:
-        position = _positions(table)
+    lines, at = _lines(table, used, len(dip), scanline), table.at
+    position = _positions(table) if "position" in at else None
     table.tell_unused(used | NAMES.keys())
     names = table.column("scanline") if "scanline" in at else [""] * len(dip)
-    sets = table.column("set") if "set" in at else None
-    if sets and FACETS <= {plain(name) for name in table.head}:
-        sets = _families(sets)
     return Measured(
         dip,
         direction,
-        sets,
-        names if trend is not None else None,
-        None if trend is None or plunge is None else line(trend, plunge),
+        families(table) if "set" in at else None,
+        names if lines is not None else None,
+        lines,
         position,
         table.notes,
     )
+
+
+def _lines(
+    table: Table, used: set[str], count: int, scanline: tuple[float, float] | None
+) -> Floats | None:
+    """Unit vectors along the scanlines of a table, or along a given one."""
+    if "trend" not in table.at or "trend" in used:
+        if scanline is None:
+            return None
+        trend, plunge = (np.full(count, angle) for angle in scanline)
+        return line(trend, plunge)
+    if "plunge" not in table.at:
+        raise CaseError(f"{table.path}: scanlines need both columns, trend and plunge")
+    if scanline is not None:
+        raise CaseError(f"{table.path}: has columns of scanlines; leave out the scanline")
+    return line(azimuths(table, "trend"), angles(table, "plunge", -90, 90))
+
+
+def _of_clusters(path: Path, scanline: tuple[float, float] | None) -> Measured:
+    """Clusters of points as joints."""
+    if scanline is not None:
+        raise CaseError(f"{path}: has clusters of a cloud, no scanline; leave it out")
+    normals, names, notes = read_clusters(path)
+    return Measured(*dips(normals), names, notes=notes)
 
 
 def _is_heading(words: list[str]) -> bool:
     return is_heading(words) or {"x", "y", "z"} <= {plain(word) for word in words}
 
 
-def _like_a_cloud(table: Table) -> str:
-    """In words, why a table without planes looks like a point cloud; empty if it does not."""
+def _refuse_cloud(table: Table) -> None:
+    """Refuse a table without planes that looks like a point cloud."""
+    if is_heading(table.head):
+        return
     if {"x", "y", "z"} <= {plain(name) for name in table.head}:
-        return f"has no planes, but x, y, z ({', '.join(table.head)})"
-    width = len(table.rows[0])
-    if not table.head and width > 2 and np.isfinite([number(w) for w in table.rows[0]]).all():
-        return f"has no line of names, and {width} numbers a line"
-    return ""
-
-
-def _prefer_normals(table: Table) -> None:
-    """Leave out dips in whole degrees beside normals: CloudCompare's facets have both."""
-    names = [plain(name) for name in table.head]
-    if not FACETS <= set(names):
+        why = f"no planes, but x, y, z ({', '.join(table.head)})"
+    elif (
+        not table.head
+        and len(row := table.rows[0]) > 2
+        and np.isfinite(list(map(number, row))).all()
+    ):
+        why = f"no line of names, and {len(row)} numbers a line"
+    else:
         return
-    dips_of = [i for i, name in enumerate(names) if name in ("dip", "dip_dir")]
-    if not all(number(row[i]).is_integer() for row in table.rows for i in dips_of):
-        return
-    table.notes.append("facets of CloudCompare: planes by their normals, as dips are whole degrees")
-    kept = [i for i in range(len(names)) if i not in dips_of]
-    table.head = [table.head[i] for i in kept]
-    table.rows = [[row[i] for i in kept] for row in table.rows]
-
-
-def _families(sets: list[str]) -> list[str] | None:
-    """Families of CloudCompare's facets as sets; 0 and -1 are none; None if there are none."""
-    named = ["" if word in ("0", "-1") else f"family{word}" for word in sets]
-    return named if any(named) else None
+    raise CaseError(f"{table.path}: has {why}; for a point cloud use --extract")
 
 
 def _positions(table: Table) -> Floats:

@@ -59,7 +59,7 @@ def extract(
     resolution: float | None = None,
     angle: float = ANGLE,
     smallest: float | None = None,
-    tell: Callable[[str, float], None] = lambda words, part: None,
+    tell: Callable[[str, float], None] | None = None,
 ) -> Extraction:
     """Find the facets of a cloud.
 
@@ -74,6 +74,7 @@ def extract(
         CaseError: The cloud has too few points, or no facets.
         BackendError: SciPy is not installed.
     """
+    tell = tell or (lambda words, part: None)
     tell("thinning", 0.0)
     thinned = thin(points, resolution)
     x, size = thinned.points, thinned.resolution

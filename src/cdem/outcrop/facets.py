@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -58,8 +59,15 @@ class Facets:
 
     def some(self, chosen: Indices) -> Facets:
         """Some of the facets, by their numbers."""
-        arrays = (self.centers, self.frames, self.areas, self.lengths, self.rms, self.tilt)
-        return Facets(*(a[chosen] for a in arrays), [self.members[k] for k in chosen.tolist()])
+        return Facets(
+            self.centers[chosen],
+            self.frames[chosen],
+            self.areas[chosen],
+            self.lengths[chosen],
+            self.rms[chosen],
+            self.tilt[chosen],
+            [self.members[k] for k in chosen.tolist()],
+        )
 
 
 def axes(normal: Floats) -> Floats:
@@ -85,7 +93,7 @@ def measure(points: Floats, core: NDArray[np.int32], label: NDArray[np.int32]) -
     """
     order = np.argsort(label, kind="stable")
     starts = np.searchsorted(label[order], np.arange(label.max() + 2))
-    members = [order[a:b] for a, b in zip(starts[:-1], starts[1:], strict=True)]
+    members = [order[a:b] for a, b in pairwise(starts.tolist())]
     rows = [_fit(points[m[core[m] >= 0]]) for m in members]
     sizes = [_extent(points[m], row[1]) for m, row in zip(members, rows, strict=True)]
     facets = Facets(

@@ -111,7 +111,7 @@ class _Growth:
         beside = beside[self.label[beside] < 0]
         beside = beside[np.abs(self.normals[beside] @ plane.normal) >= self.cosine]
         away = np.abs((self.points[beside] - plane.center) @ plane.normal)
-        return beside[away <= self.rules.tolerance]
+        return np.asarray(beside[away <= self.rules.tolerance], np.intp)
 
 
 def grow(points: Floats, found: Normals, rules: Rules) -> tuple[Ints, list[Plane]]:

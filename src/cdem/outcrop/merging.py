@@ -10,9 +10,7 @@ from cdem.outcrop.growing import GROWTH_NEIGHBOURS, Ints, Plane, Rules
 from cdem.outcrop.normals import Normals
 
 
-def merged(
-    found: Normals, label: Ints, planes: list[Plane], rules: Rules
-) -> NDArray[np.int64]:
+def merged(found: Normals, label: Ints, planes: list[Plane], rules: Rules) -> NDArray[np.int64]:
     """New numbers of regions: of those that touch, whose normals differ by less than half the angle
     of the rules, and whose points deviate from one plane by half the tolerance at most.
 

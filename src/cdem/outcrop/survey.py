@@ -154,7 +154,9 @@ class OutcropSurvey:
         lines = []
         for e in self.exposures:
             if e.spacing.planes < FEW_PLANES:
-                lines.append(f"note: {e.name} has {e.spacing.planes} planes: its spacing is a guess")
+                lines.append(
+                    f"note: {e.name} has {e.spacing.planes} planes: its spacing is a guess"
+                )
             if e.length.seen < FEW_ENDS:
                 lines.append(
                     f"note: {e.name} shows {e.length.seen} ends of facets: its length is a guess"

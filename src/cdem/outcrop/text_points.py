@@ -41,32 +41,39 @@ def read_text_points(path: Path, notes: list[str]) -> Floats:
         CaseError: It has no rows of three numbers, or is a table of joints; names the place.
     """
     with path.open("rb") as file:
-        lines = [file.readline(LONGEST_LINE).decode("utf-8-sig", "replace") for _ in range(LOOKED_AT)]
-    head: list[str] = []
-    for skipped, line in enumerate(lines):
-        words = _words(line)
-        if not any(words) or line.lstrip().startswith(COMMENTS):
-            if len(named := _words(line.lstrip("#/% "))) > 2 and not _numbers(named, 1):
-                head = named
-        elif _numbers(words, 3):
-            break
-        elif not _numbers(words, 1):
-            head = words
-    else:
-        _refuse_table(path, head)
+        lines = [
+            file.readline(LONGEST_LINE).decode("utf-8-sig", "replace") for _ in range(LOOKED_AT)
+        ]
+    head, skipped = _begin(lines)
+    _refuse_table(path, head)
+    if skipped == len(lines):
         raise CaseError(
             f"{path}: no line of three numbers among its first {LOOKED_AT}; a cloud has x y z in each"
         )
+    words = _words(lines[skipped])
     if len(head) != len(words):
         head = []
-    _refuse_table(path, head)
     at = _columns(head)
     idle = [name or "?" for i, name in enumerate(head) if i not in at]
     if not head and len(words) > 3:
         idle = [f"{len(words) - 3} after x, y, z"]
     if idle:
         notes.append(f"columns not used: {', '.join(idle)}")
-    return _load(path, line, skipped, at)
+    return _load(path, lines[skipped], skipped, at)
+
+
+def _begin(lines: list[str]) -> tuple[list[str], int]:
+    """Names of the columns, if any, and the number of lines before the first point."""
+    head: list[str] = []
+    for skipped, line in enumerate(lines):
+        words = _words(line)
+        if line.lstrip().startswith(COMMENTS):
+            words = _words(line.lstrip("#/% "))
+        elif _numbers(words, 3):
+            return head, skipped
+        if len(words) > 1 and not _numbers(words, 1):
+            head = words
+    return head, len(lines)
 
 
 def _words(line: str) -> list[str]:
@@ -100,9 +107,10 @@ def _columns(head: list[str]) -> list[int]:
 def _load(path: Path, line: str, skipped: int, at: list[int]) -> Floats:
     """The three columns below the skipped lines."""
     mark = next((m for m in MARKS if m in line), None)
-    rows = {"usecols": at, "skiprows": skipped, "comments": COMMENTS, "ndmin": 2}
-    if mark != "," and re.search(r"\d,\d", line):  # decimal commas
-        text = path.read_text("latin-1").replace(",", ".")
-        return np.loadtxt(io.StringIO(text), delimiter=mark, **rows)  # type: ignore[arg-type]
-    with path.open(encoding="latin-1") as file:
-        return np.loadtxt(file, delimiter=mark, **rows)  # type: ignore[arg-type]
+    text: io.TextIOBase
+    with path.open(encoding="latin-1") as text:
+        if mark != "," and re.search(r"\d,\d", line):  # decimal commas
+            text = io.StringIO(text.read().replace(",", "."))
+        return np.loadtxt(
+            text, delimiter=mark, usecols=at, skiprows=skipped, comments=COMMENTS, ndmin=2
+        )

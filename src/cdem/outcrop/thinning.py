@@ -91,7 +91,9 @@ def _mean_spacing(points: Floats) -> float:
     tree = scipy_spatial().cKDTree(points)
     some = points[:: max(1, len(points) // SAMPLE)]
     away = tree.query(some, min(COPIES, len(points)), workers=-1)[0]
-    nearest = np.where(away > 0, away, np.inf).min(axis=1)  # a copy at the same place does not count
+    nearest = np.where(away > 0, away, np.inf).min(
+        axis=1
+    )  # a copy at the same place does not count
     if not np.isfinite(median := float(np.median(nearest))):
         raise CaseError("most points of the cloud lie at one place; give --resolution")
     return PER_NEIGHBOUR * median

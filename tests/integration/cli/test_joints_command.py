@@ -102,7 +102,9 @@ def test_joints_of_a_cloud(run_cli, cloud, quick_pictures):
 def test_json_of_a_cloud(run_cli, cloud, quick_pictures):
     status, out, _ = run_cli("joints", "wall.xyz", "--extract", "--sets", "3", "--json")
     facts = json.loads(out)
-    assert status == 0 and facts["facets"] > 10 and facts["resolution"] == pytest.approx(0.03, rel=0.2)
+    assert (
+        status == 0 and facts["facets"] > 10 and facts["resolution"] == pytest.approx(0.03, rel=0.2)
+    )
     row = facts["sets"][0]
     assert row["planes"] > 2 and row["area"] > 1 and 0 < row["persistence"] <= 1
     assert row["length"]["traces"] == row["facets"] >= row["length"]["seen"] / 2

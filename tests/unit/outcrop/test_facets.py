@@ -20,7 +20,9 @@ def test_area_of_a_rectangle(wide, tall):
     random = np.random.default_rng(4)
     spacing = 0.03  # points as after thinning: about evenly spaced
     x, y = np.meshgrid(np.arange(spacing / 2, wide, spacing), np.arange(spacing / 2, tall, spacing))
-    flat = np.column_stack([x.ravel(), y.ravel()]) + 0.3 * spacing * random.uniform(-1, 1, (x.size, 2))
+    flat = np.column_stack([x.ravel(), y.ravel()]) + 0.3 * spacing * random.uniform(
+        -1, 1, (x.size, 2)
+    )
     assert area_of(flat) == pytest.approx(wide * tall, rel=0.03)
 
 

@@ -29,7 +29,9 @@ def test_two_faces_that_meet_in_an_edge():
     label, planes, core = regions(x)
     assert len(planes) == 2
     level = label[np.arange(6_000) < 3_000]
-    for plane, axis in zip(planes, (2, 0) if abs(planes[0].normal[2]) > 0.9 else (0, 2), strict=True):
+    for plane, axis in zip(
+        planes, (2, 0) if abs(planes[0].normal[2]) > 0.9 else (0, 2), strict=True
+    ):
         assert abs(plane.normal[axis]) > np.cos(np.radians(0.5))
     assert (core >= 0).mean() < 0.98 < (label >= 0).mean()  # the edge has rims
     assert (level == np.bincount(level[level >= 0]).argmax()).mean() > 0.97

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+
 from cdem.joints.directions import pole
 from cdem.outcrop.facets import axes
 from cdem.outcrop.normals import normals_of

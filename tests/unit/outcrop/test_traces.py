@@ -13,8 +13,10 @@ def test_the_mean_of_lengths_cut_by_a_window(law):
     """Mauldon (1998): twice the length over the ends, for any law and about any middle points."""
     random = np.random.default_rng(8)
     mean, wide, count = 5.0, 6.0, 40_000
-    lengths = random.exponential(mean, count) if law == "exponential" else (
-        random.uniform(0, 2 * mean, count)
+    lengths = (
+        random.exponential(mean, count)
+        if law == "exponential"
+        else (random.uniform(0, 2 * mean, count))
     )
     middle = random.uniform(-40, 46, count)
     low, high = middle - lengths / 2, middle + lengths / 2
