@@ -19,10 +19,10 @@ MOST_POINTS = 300_000
 """Most points to draw; of more, evenly chosen ones are drawn."""
 PLUNGE = 20.0
 """Downward view [deg]."""
-WIDTH, TALLEST, WIDEST = 9.0, 10.0, 16.0
-"""Size of the picture [inch]."""
-AREA = 0.72
-"""Part of a square between neighbours that a dot covers."""
+WIDTH, TALLEST = 9.0, 10.0
+"""Largest size of the outcrop in the picture [inch]."""
+WIDER = 1.45
+"""Diameter of a dot, as a multiple of the resolution: dots cover the faces behind them."""
 
 
 def draw(outcrop: OutcropSurvey, path: Path) -> Path:
@@ -42,9 +42,9 @@ def draw(outcrop: OutcropSurvey, path: Path) -> Path:
     scale = min(WIDTH / wide, TALLEST / tall)
     figure, axes = plt.subplots(figsize=(max(5.0, scale * wide + 0.4), scale * tall + 1.2))
     order = np.argsort(flat[:, 2])  # the nearest last
-    dot = 72 * scale * found.resolution * np.sqrt(every)
+    dot = 72 * scale * found.resolution * WIDER * float(np.sqrt(every))
     axes.scatter(
-        *flat[order, :2].T, c=colors[order], s=max(dot**2 / AREA, 0.4), lw=0, rasterized=True
+        *flat[order, :2].T, c=colors[order], s=max(dot**2, 0.4), lw=0, rasterized=True
     )
     axes.set_aspect("equal")
     axes.set_axis_off()
@@ -53,7 +53,8 @@ def draw(outcrop: OutcropSurvey, path: Path) -> Path:
         s = outcrop.survey.fit.sets[k]
         label = f"{e.name}  {plane_text(s.dip, s.dip_direction)}, {e.facets} facets"
         axes.plot([], [], "s", color=f"C{k}", label=label)
-    axes.plot([], [], "s", color="0.55", label="facets of no set")
+    if (outcrop.set_of < 0).any():
+        axes.plot([], [], "s", color="0.55", label="facets of no set")
     axes.plot([], [], "s", color="0.85", label="no facet")
     axes.legend(frameon=False, fontsize=8, loc="upper center", bbox_to_anchor=(0.5, 0), ncols=3)
     azimuth = np.degrees(np.arctan2(-frame[2, 0], -frame[2, 1])) % 360
@@ -95,7 +96,7 @@ def _colors(outcrop: OutcropSurvey, frame: Floats) -> Floats:
     for k, members in enumerate(facets.members):
         color = to_rgb("0.55") if outcrop.set_of[k] < 0 else to_rgb(f"C{outcrop.set_of[k]}")
         normal = facets.normals[k] * (1 if facets.normals[k] @ frame[2] >= 0 else -1)
-        bright = 0.55 + 0.55 * max(0.0, float(normal @ light) / float(np.linalg.norm(light)))
+        bright = 0.72 + 0.38 * max(0.0, float(normal @ light) / float(np.linalg.norm(light)))
         out[members] = np.minimum(1.0, np.array(color) * bright + max(0.0, bright - 0.85) * 0.5)
     return out
 
@@ -107,4 +108,6 @@ def _bar(axes: Any, low: Floats, high: Floats) -> None:
     length = power * max(m for m in (1, 2, 5) if m * power <= wide / 4)
     y = low[1] - 0.03 * (high[1] - low[1])
     axes.plot([low[0], low[0] + length], [y, y], color="black", lw=2, solid_capstyle="butt")
-    axes.text(low[0] + length / 2, y, f"{length:g} m", ha="center", va="top", fontsize=8)
+    place = (low[0] + length / 2, y)
+    style = {"xytext": (0, -4), "textcoords": "offset points", "ha": "center", "va": "top"}
+    axes.annotate(f"{length:g} m", place, fontsize=8, **style)
