@@ -11,6 +11,7 @@ from shared import strangers
 
 from cdem.errors import CdemError
 from cdem.mesh.mesh_files import read_mesh
+from cdem.outcrop.cloud_files import read_outcrop
 from cdem.terrain.features import read_features
 from cdem.terrain.rasters import read_raster
 
@@ -50,8 +51,9 @@ def listener():
         ),
         (strangers.write_rasters, read_raster, 33, range(33)),
         (strangers.write_meshes, read_mesh, 5, range(5)),
+        (strangers.write_clouds, read_outcrop, 6, range(6)),
     ],
-    ids=["vectors", "all vectors", "more vectors", "rasters", "meshes"],
+    ids=["vectors", "all vectors", "more vectors", "rasters", "meshes", "clouds"],
 )
 def test_no_file_leads_elsewhere_or_to_no_end(
     tmp_path, monkeypatch, listener, write, read, count, taken

@@ -238,6 +238,30 @@ def write_rasters(folder: Path, url: str, secret: Path) -> list[Path]:
     return [folder / name for name in texts]
 
 
+def write_clouds(folder: Path, url: str, secret: Path) -> list[Path]:
+    """Clouds that name textures, projections and files elsewhere."""
+    import laspy
+
+    vertices = (
+        "element vertex 1\nproperty float x\nproperty float y\nproperty float z\nend_header\n"
+    )
+    texts = {
+        "texture.ply": f"ply\nformat ascii 1.0\ncomment TextureFile {secret}\n{vertices}0 0 0\n",
+        "net.ply": f"ply\nformat ascii 1.0\nobj_info {url}/a.png\n{vertices}0 0 0\n",
+        "net.xyz": f"{url}/a.xyz\n{secret}\n",
+        "named.csv": f"x,y,z\n{secret},{url}/a,1\n",
+    }
+    for name, text in texts.items():
+        (folder / name).write_text(text)
+    system = f"{url}/system.prj"
+    wkt = f'BOUNDCRS["a",NADGRIDS["{url}/grid.gsb"]] {secret}'
+    for name, words in (("net.las", system), ("grid.las", wkt)):
+        header = laspy.LasHeader(point_format=6, version="1.4")
+        header.vlrs.append(laspy.VLR("LASF_Projection", 2112, "", words.encode() + b"\0"))
+        laspy.LasData(header).write(folder / name)
+    return [folder / name for name in (*texts, "net.las", "grid.las")]
+
+
 def write_meshes(folder: Path, url: str, secret: Path) -> list[Path]:
     """Meshes that name other files."""
     grid = (

@@ -85,6 +85,35 @@ def write_files(folder: Path) -> None:
     (folder / "history-a.csv").write_text("# blast\ntime [ms]; factor [%]\n0; 0\n0.5; 100\n2; 30\n")
     (folder / "history-b.txt").write_text("0 0\n0.5\t1e0\n2 -.3\n")
     _write_records(folder)
+    _write_outcrops(folder)
+
+
+def _write_outcrops(folder: Path) -> None:
+    """Clouds of an outcrop, facets of CloudCompare, clusters of DSE."""
+    import laspy
+    import numpy as np
+
+    x = np.random.default_rng(1).uniform(0, 5, (60, 3)).round(3)
+    rows = "\n".join(" ".join(map(str, row)) for row in x)
+    (folder / "outcrop-a.xyz").write_text(f"# scan\n{rows}\n")
+    (folder / "outcrop-b.pts").write_text(
+        f"60\n{rows.replace(chr(10), ' 7 255 0 0' + chr(10))} 7 1 1 1"
+    )
+    (folder / "outcrop-c.csv").write_text(f"x;y;z\n{rows.replace(' ', ';').replace('.', ',')}\n")
+    for name, kind in (("d", "ascii"), ("e", "binary_little_endian")):
+        head = f"ply\nformat {kind} 1.0\ncomment TextureFile a.png\nelement vertex 60\n"
+        head += "".join(f"property float {axis}\n" for axis in "xyz") + "end_header\n"
+        raw = rows.encode() if kind == "ascii" else x.astype("<f4").tobytes()
+        (folder / f"outcrop-{name}.ply").write_bytes(head.encode() + raw)
+    cloud = laspy.LasData(laspy.LasHeader(point_format=0, version="1.2"))
+    cloud.x, cloud.y, cloud.z = x.T
+    cloud.write(folder / "outcrop-f.las")
+    cloud.write(folder / "outcrop-g.laz")
+    head = "Index; CenterX; NormalX; NormalY; NormalZ; Horiz_ext; Vert_ext; Dip dir.; Dip; Family ind.; \n"
+    facets = "".join(f"{k};{k}.5;0.5;0;0.866;1;1;90;30;{k % 2};\n" for k in range(6))
+    (folder / "facets-a.csv").write_text(head + facets)
+    clusters = "".join(f"{k}\t1\t2\t{1 + k % 2}\t{1 + k // 2}\t0\t0\t1\t-2\n" for k in range(8))
+    (folder / "facets-b.txt").write_text(clusters)
 
 
 def _write_records(folder: Path) -> None:

@@ -154,16 +154,18 @@ def _few_planes(case: Any, boxes: list[Any]) -> bool:
 
 
 def read_file(path: Path) -> None:
-    """Read a mesh, bodies, contours, a grid, a history, a record, an outline, and do what follows first."""
+    """Read a file by the first part of its name, and do what follows first."""
     import numpy as np
 
     from cdem.case.history_file import with_histories
     from cdem.case.record_file import read_series
     from cdem.case.source import Source
     from cdem.case.waves_schema import Record
+    from cdem.joints.measured import read_measured
     from cdem.mesh.blocks import build_topology
     from cdem.mesh.mesh_files import read_mesh
     from cdem.model.body_files import read_bodies
+    from cdem.outcrop.cloud_files import read_outcrop
     from cdem.terrain.clouds import read_cloud
     from cdem.terrain.files import read_lines, read_outline
     from cdem.terrain.heights import Lines
@@ -186,6 +188,10 @@ def read_file(path: Path) -> None:
         Record(
             samples=series.samples.tolist(), unit=series.unit or "g", step=series.step or 0.01
         ).steps()
+    elif kind == "outcrop":
+        read_outcrop(path)
+    elif kind == "facets":
+        read_measured(path)
     elif kind == "cloud":
         box = np.zeros(2), np.full(2, 9.0)
         read_cloud(path, Projection(None), None, box, 1.0, "ground")

@@ -43,9 +43,7 @@ def draw(outcrop: OutcropSurvey, path: Path) -> Path:
     figure, axes = plt.subplots(figsize=(max(5.0, scale * wide + 0.4), scale * tall + 1.2))
     order = np.argsort(flat[:, 2])  # the nearest last
     dot = 72 * scale * found.resolution * WIDER * float(np.sqrt(every))
-    axes.scatter(
-        *flat[order, :2].T, c=colors[order], s=max(dot**2, 0.4), lw=0, rasterized=True
-    )
+    axes.scatter(*flat[order, :2].T, c=colors[order], s=max(dot**2, 0.4), lw=0, rasterized=True)
     axes.set_aspect("equal")
     axes.set_axis_off()
     _bar(axes, low, high)
