@@ -23,6 +23,7 @@ from mutant_list import (
     joints,
     mesh,
     model,
+    outcrop,
     output,
     package,
     ranks,
@@ -33,7 +34,20 @@ from mutant_list import (
 )
 from mutant_list.mutant import Mutant
 
-PYTHON = [package, case, mesh, joints, model, run, output, study, screening, seismic, blasts]
+PYTHON = [
+    package,
+    case,
+    mesh,
+    joints,
+    model,
+    run,
+    output,
+    study,
+    outcrop,
+    screening,
+    seismic,
+    blasts,
+]
 CORE = [
     bindings,
     ranks,

@@ -37,9 +37,13 @@ _SIDED = re.compile(_ANGLE + _MINUTES + r"\s*([NESWO]{1,3})", re.IGNORECASE)
 _PAIR = re.compile(r"(.+?)\s*(?:[/∠,]|\s)\s*(\S+(?:\s*[NESW]{1,3})?)")
 
 
+LONGEST = 40
+"""Most characters of an angle: more are no angle, and would take the patterns very long."""
+
+
 def angle(word: str) -> float:
     """An angle [deg], with or without a degree sign and minutes; NaN for other text."""
-    found = _PLAIN.fullmatch(word.strip())
+    found = _match(_PLAIN, word)
     return np.nan if found is None else _degrees(found[1], found[2], found[3])
 
 
@@ -48,7 +52,7 @@ def azimuth(word: str) -> float:
     word = word.strip()
     if (name := wind(word)) is not None:
         return name
-    found = _BEARING.fullmatch(word)
+    found = _match(_BEARING, word)
     if found is None:
         return angle(word)
     begin, turn = WINDS[found[1].upper()], _degrees(found[2], found[3], found[4])
@@ -70,7 +74,7 @@ def wind(word: str) -> float | None:
 
 def sided(word: str) -> tuple[float, str]:
     """An angle and the side of its dip, empty without one: `40 SE`; NaN for other text."""
-    found = _SIDED.fullmatch(word.strip())
+    found = _match(_SIDED, word)
     if found is None:
         return angle(word), ""
     return _degrees(found[1], found[2], found[3]), found[4].upper()
@@ -78,8 +82,13 @@ def sided(word: str) -> tuple[float, str]:
 
 def pair(word: str) -> tuple[str, str] | None:
     """Both halves of an attitude in one word: `N45E 40SE`, `120/40`, `120°∠40°`."""
-    found = _PAIR.fullmatch(word.strip())
+    found = _match(_PAIR, word)
     return None if found is None else (found[1], found[2])
+
+
+def _match(pattern: re.Pattern[str], word: str) -> re.Match[str] | None:
+    word = word.strip()
+    return pattern.fullmatch(word) if len(word) <= LONGEST else None
 
 
 def _degrees(whole: str, minutes: str | None, seconds: str | None) -> float:

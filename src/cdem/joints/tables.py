@@ -151,6 +151,13 @@ def read_table(path: Path, what: str, is_head: Callable[[list[str]], bool]) -> T
     Raises:
         CaseError: It cannot be read, or a row has another number of columns; names the place.
     """
+    try:
+        return _read(path, what, is_head)
+    except csv.Error as error:  # a word without end
+        raise CaseError(f"{path}: is no {what} ({error})") from None
+
+
+def _read(path: Path, what: str, is_head: Callable[[list[str]], bool]) -> Table:
     text, notes = _text(path, what, is_head)
     lines = [
         (k, words)

@@ -119,7 +119,8 @@ def _ply(path: Path, notes: list[str]) -> Floats:
             f"its coordinates have single precision: steps of {1000 * step:.2g} mm, which look like "
             "noise; export it with a shift to the origin"
         )
-    return points.astype(float)
+    with np.errstate(invalid="ignore"):  # of bits that are no number
+        return points.astype(float)
 
 
 def _local(path: Path, points: Floats, notes: list[str]) -> Cloud:

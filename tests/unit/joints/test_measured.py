@@ -66,3 +66,13 @@ def test_what_is_refused(tmp_path, text, what):
 def test_two_sources_of_scanlines_are_refused(tmp_path):
     with pytest.raises(CaseError, match="leave out the scanline"):
         read(tmp_path, "dip,azi,trend,plunge\n30,90,0,90\n", scanline=(0, 90))
+
+
+@pytest.mark.parametrize("word", ["9" * 400, "N" + "9" * 400 + "E", "9 " * 200 + "/"])
+def test_a_word_without_end_is_refused_at_once(tmp_path, word):
+    with pytest.raises(CaseError, match="must be|contains|many things"):
+        read(tmp_path, f"dip,dip_direction\n30,90\n{word},80\n")
+    with pytest.raises(CaseError):
+        read(tmp_path, f"attitude\n120/40\n{word}\n")
+    with pytest.raises(CaseError, match="is no table of joints"):
+        read(tmp_path, f"dip,dip_direction\n{400 * word},80\n")
