@@ -70,7 +70,7 @@ def test_two_sources_of_scanlines_are_refused(tmp_path):
 
 @pytest.mark.parametrize("word", ["9" * 400, "N" + "9" * 400 + "E", "9 " * 200 + "/"])
 def test_a_word_without_end_is_refused_at_once(tmp_path, word):
-    with pytest.raises(CaseError, match="must be|contains|many things"):
+    with pytest.raises(CaseError, match=r"must be|contains|many things"):
         read(tmp_path, f"dip,dip_direction\n30,90\n{word},80\n")
     with pytest.raises(CaseError):
         read(tmp_path, f"attitude\n120/40\n{word}\n")
