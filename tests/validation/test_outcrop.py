@@ -46,7 +46,7 @@ def compare(outcrop, found):
 
 
 def test_sets_spacing_and_areas(tmp_path):
-    """Three sets of parallel planes, 24,000 points with a noise of 5 mm."""
+    """Three sets of parallel planes, 33,000 points with a noise of 5 mm."""
     outcrop = blocky(size=4.0, density=900, seed=5)
     assert 15_000 < len(outcrop.points) < 40_000
     found = surveyed(outcrop, tmp_path)
@@ -91,7 +91,7 @@ def test_scattered_planes_holes_and_an_uneven_density(tmp_path, noise):
 
 @pytest.mark.slow
 def test_mean_length_of_traces_cut_by_the_window():
-    """More than 400 ledges of exponential lengths, a fifth of them cut at the sides of the cloud.
+    """More than 400 ledges of exponential lengths, a quarter of whose ends lie beyond the cloud.
 
     The truth is the cloud's own sample: twice the length inside over the ends inside, of the ledges
     that are long enough for a facet. It is near the mean of the law of lengths above this smallest
