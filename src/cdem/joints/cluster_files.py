@@ -35,7 +35,8 @@ def is_clusters(path: Path) -> bool:
     if len(values) != WIDTH or not np.isfinite(values).all():
         return False
     whole = (values[3:5] == np.round(values[3:5])).all()
-    return bool(whole and abs(np.linalg.norm(values[5:8]) - 1) < UNIT)
+    unit = (np.abs(values[5:8]) < 2).all() and abs(np.linalg.norm(values[5:8]) - 1) < UNIT
+    return bool(whole and unit)
 
 
 def read_clusters(path: Path) -> tuple[Floats, list[str], list[str]]:
