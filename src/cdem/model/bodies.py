@@ -22,8 +22,13 @@ LARGE = 1000.0
 """Largest size without a warning if there are no others [m]."""
 
 
-def read_model(case: Case) -> Mesh:
-    """Read and place the mesh file and the blocks of a case, all in one mesh."""
+def read_model(case: Case, more: Mesh | None = None) -> Mesh:
+    """Read and place the mesh file and the blocks of a case, all in one mesh.
+
+    Args:
+        case: The case.
+        more: Bodies that the caller has made, in their places.
+    """
     pieces = []
     model = case.model
     if model.mesh is not None:
@@ -34,7 +39,8 @@ def read_model(case: Case) -> Mesh:
             pieces.append(_block(case, block))
     _tell_sizes(case, pieces)
     if not model.joints:
-        return place(merge(pieces), model.rotate, model.translate)
+        placed = place(merge(pieces), model.rotate, model.translate)
+        return placed if more is None else merge([more, placed])
     pieces = [place(piece, model.rotate, model.translate) for piece in pieces]
     hulls: list[list[list[int]] | None] = [None] * (model.mesh is not None)
     for block in model.blocks:

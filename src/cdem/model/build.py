@@ -156,8 +156,12 @@ class Build:
         return np.flatnonzero(self.node_groups() == self.group_names.index(group))
 
 
-def build(case: Case) -> Build:
+def build(case: Case, more: Mesh | None = None) -> Build:
     """Build the model of a case.
+
+    Args:
+        case: The case; without joints if there are more bodies.
+        more: Bodies that the caller has made, beside those of the case.
 
     Raises:
         CaseError: Something in the case file does not fit the model.
@@ -166,7 +170,7 @@ def build(case: Case) -> Build:
     """
     with case.blame("model"):
         check_memory(case, pieces_of_boxes(case))
-    merged = read_model(case)
+    merged = read_model(case, more)
     names = merged.group_names
     check_groups(case, names)
     laws, interface_of = interfaces_of(case, names)

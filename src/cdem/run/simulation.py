@@ -35,6 +35,7 @@ from cdem.run.state import Attributes, RunState, Setting
 
 if TYPE_CHECKING:
     from cdem._core import Core
+    from cdem.mesh.mesh import Mesh
     from cdem.ranks.exchange import Exchange
     from cdem.run.result_folder import Results
     from cdem.run.shared_results import SharedResults
@@ -58,6 +59,8 @@ class Simulation(RunState):
         strict: Treat warnings of `cdem check` as errors, before anything is written.
         exchange: How this rank talks with the others that share the model; None for one alone.
             All ranks make the same simulation and call the same functions.
+        more: Bodies that the caller has made, beside those of the case; a result folder does not
+            keep them, so there is no output with them, and no joints.
 
     Raises:
         CaseError: The case or its files are wrong, or differ from the run to resume, or
@@ -92,6 +95,7 @@ class Simulation(RunState):
         force: bool = False,
         strict: bool = False,
         exchange: Exchange | None = None,
+        more: Mesh | None = None,
     ) -> None:
         if isinstance(case, dict):
             case = Case.from_dict(case)
@@ -110,7 +114,7 @@ class Simulation(RunState):
             digests: dict[str, str] = {}
             if self.results and resume:
                 case, digests = with_kept_records(self.results.folder, case)
-            super().__init__(case, threads)
+            super().__init__(case, threads, more)
             self.record_digests = digests
             self.flow = FlowRecorder(self) if self.case.output.maps else None
             self._begin(resume=resume, force=force, strict=strict)

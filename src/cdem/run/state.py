@@ -18,6 +18,7 @@ from cdem._version import __version__
 from cdem.case.case import Case
 from cdem.case.untouched import Untouched
 from cdem.errors import CaseError
+from cdem.mesh.mesh import Mesh
 from cdem.model.audit import Audit
 from cdem.model.build import Build, build
 from cdem.model.domain import leaving, outside
@@ -151,12 +152,12 @@ class RunState:
 
     audit: Audit
 
-    def __init__(self, case: Case, threads: int) -> None:
+    def __init__(self, case: Case, threads: int, more: Mesh | None = None) -> None:
         self.case = case.model_copy(deep=True)  # stages change the copy, not the caller's case
         self.given_case = case.model_copy(deep=True)
         self.keep_case()
         self.threads = threads
-        self.build: Build = build(self.case)
+        self.build: Build = build(self.case, more)
         self.core = self.build.core
         self.overlap = (0.0, 0, -1)
         self.stage_index = 0

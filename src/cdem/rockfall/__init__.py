@@ -1,0 +1,1 @@
+"""Rockfall: many runs of one block each over bare ground, and their statistics."""
