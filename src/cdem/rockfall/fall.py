@@ -39,6 +39,8 @@ BELOW = 0.5
 AT_REST, LEFT, OVER, THROUGH, FAILED = (
     "at rest", "left the terrain", "duration reached", "fell through the ground", "failed",
 )  # fmt: skip
+ORIGIN = 10_000.0
+"""Places in a simulation count from multiples of it: coordinates of maps have seven digits [m]."""
 COLUMNS = (
     "time", "x", "y", "z", "vx", "vy", "vz", "wx", "wy", "wz", "rotation", "bottom", "top",
 )  # fmt: skip
@@ -55,7 +57,6 @@ class Physics:
         modulus: Contact stiffness times the radius of the block [Pa].
         stiffening: Young's modulus of the block over `modulus` [1].
         contacts: Interface of the block with each zone of the ground: keys of a case.
-        damping: Contact damping ratio of interfaces without restitution [1].
         sample: Time between two samples [s].
         duration: Longest time [s].
     """
@@ -65,7 +66,7 @@ class Physics:
     contacts: list[dict[str, Any]]
     sample: float
     duration: float
-    stiffening: float = 5.0
+    stiffening: float = 3.0
 
 
 @dataclass(frozen=True)
@@ -220,13 +221,15 @@ class _Run:
         """One simulation; returns the motion at its end."""
         low, high = self._edges(motion)
         window, (low, high) = self._ground.window(low, high)
-        begin, points = self._time, self._position
+        origin = np.array([*(ORIGIN * np.floor(low / ORIGIN)), 0.0])
+        window.points = window.points - origin
+        begin, points = self._time, self._position - origin
         vertices = points[: len(self._boulder.vertices)]
         body = {"vertices": vertices.tolist(), "faces": self._faces}
         case = case_of(body, self._physics, self._body.radius, self.out.modulus, window.group_names)
         sim = Simulation(case, threads=1, more=window)
-        nodes = _places(sim.fields["position"], points)
-        velocity = motion.velocity + np.cross(motion.spin, points - motion.centre)
+        nodes = _places(sim, points)
+        velocity = motion.velocity + np.cross(motion.spin, self._position - motion.centre)
         rows_of(sim.core, "node.motion").velocity[nodes] = velocity
         self.out.windows += 1
         self._before = None
@@ -235,7 +238,7 @@ class _Run:
         def look(sim: Simulation) -> bool:
             nonlocal last
             self._time = begin + sim.time
-            self._position = sim.fields["position"][nodes]
+            self._position = sim.fields["position"][nodes] + origin
             last = self._body.motion(self._position, sim.fields["velocity"][nodes])
             self._note(last, self._position)
             self.out.status = self._end(last)
@@ -316,8 +319,8 @@ class _Run:
         return not bool((near_west & ~at_west | near_east & ~at_east).any())
 
 
-def _places(position: Floats, points: Floats) -> NDArray[np.intp]:
-    """Nodes of the simulation at these points: its last ones, in an order of their own."""
-    first = len(position) - len(points)
-    away = np.abs(position[first:, None] - points[None]).max(axis=2)
-    return first + away.argmin(axis=0)
+def _places(sim: Simulation, points: Floats) -> NDArray[np.intp]:
+    """Nodes of the block at these points: a simulation has an order of its own."""
+    nodes = sim.groups[BLOCK].nodes
+    away = np.abs(sim.fields["position"][nodes][:, None] - points[None]).max(axis=2)
+    return nodes[away.argmin(axis=0)]

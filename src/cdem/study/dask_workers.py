@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 from cdem.errors import BackendError, CdemError
 from cdem.study.local_workers import DIED
 from cdem.study.worker import execute
+
+Execute = Callable[[dict[str, Any]], dict[str, Any]]
 
 
 class DaskWorkers:
@@ -14,10 +17,11 @@ class DaskWorkers:
 
     Args:
         client: The client.
+        execute: Executes a task on a worker.
     """
 
-    def __init__(self, client: Any) -> None:
-        self._client = client
+    def __init__(self, client: Any, execute: Execute = execute) -> None:
+        self._client, self._execute = client, execute
 
     @property
     def threads(self) -> int:
@@ -43,7 +47,7 @@ class DaskWorkers:
 
     def submit(self, task: dict[str, Any]) -> DaskTask:
         """Let a worker execute a task."""
-        return DaskTask(self._client.submit(execute, task, pure=False))
+        return DaskTask(self._client.submit(self._execute, task, pure=False))
 
     def cancel(self, tasks: list[DaskTask]) -> None:
         """Cancel all tasks."""

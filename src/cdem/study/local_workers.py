@@ -21,6 +21,7 @@ TRIES = 3
 """Most starts of a run whose workers crash."""
 ALONE = {"OMP_NUM_THREADS": "1", "OMP_WAIT_POLICY": "passive"}
 """Environment of a worker: it has one thread."""
+PROGRAM = "cdem.study.worker"
 DIED = "its worker crashed repeatedly (out of memory?)"
 
 
@@ -29,6 +30,7 @@ class LocalWorkers:
 
     Args:
         count: Processes; None for one per core that this process may use.
+        program: Module that serves tasks, as `cdem.study.worker` does.
 
     Attributes:
         threads: Number of simultaneous tasks.
@@ -37,10 +39,10 @@ class LocalWorkers:
 
     dashboard = ""
 
-    def __init__(self, count: int | None) -> None:
+    def __init__(self, count: int | None, program: str = PROGRAM) -> None:
         self.threads = count or cores()
         self._idle: queue.SimpleQueue[_Worker] = queue.SimpleQueue()
-        self._all = [_Worker() for _ in range(self.threads)]
+        self._all = [_Worker(program) for _ in range(self.threads)]
         for worker in self._all:
             self._idle.put(worker)
         self._pool = ThreadPoolExecutor(self.threads)
@@ -99,7 +101,8 @@ class LocalTask:
 class _Worker:
     """One process, started on demand, and again after a crash."""
 
-    def __init__(self) -> None:
+    def __init__(self, program: str) -> None:
+        self._program = program
         self._process: subprocess.Popen[str] | None = None
         self._ended = False
 
@@ -125,7 +128,7 @@ class _Worker:
             raise CdemError("the sweep has ended")
         if self._process is None or self._process.poll() is not None:
             self._process = subprocess.Popen(
-                child.module("cdem.study.worker"),
+                child.module(self._program),
                 stdin=subprocess.PIPE,
                 stdout=subprocess.PIPE,
                 stderr=subprocess.DEVNULL,

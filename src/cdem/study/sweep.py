@@ -11,14 +11,14 @@ from typing import Any
 
 from cdem.errors import BackendError, CdemError
 from cdem.run.progress import clock
-from cdem.study.dask_workers import DaskTask, DaskWorkers
+from cdem.study.dask_workers import DaskTask, DaskWorkers, Execute
 from cdem.study.local_workers import LocalTask, LocalWorkers
 from cdem.study.plan import plan
 from cdem.study.results_table import Table, check_results
 from cdem.study.run import Run
 from cdem.study.samples import SAMPLES, to_keep
 from cdem.study.study import Study
-from cdem.study.worker import finished
+from cdem.study.worker import execute, finished
 from cdem.whole_files import refuse_link, write_json
 
 POLL_SECONDS, LOOK_SECONDS = 0.05, 0.5
@@ -114,8 +114,8 @@ def run_studies(
         check_results(owner[run.identity], run)
 
     if waiting:
-        with LocalWorkers(workers) if scheduler is None else _scheduler(scheduler) as pool:
-            _execute_all(check, runs, waiting, pool, progress, should_stop)
+        with LocalWorkers(workers) if scheduler is None else dask_workers(scheduler) as pool:
+            execute_all(check, runs, waiting, pool, progress, should_stop)
     return tables
 
 
@@ -133,8 +133,16 @@ def _open(folder: Path, study: Study, runs: list[Run]) -> None:
 
 
 @contextmanager
-def _scheduler(address: str) -> Iterator[DaskWorkers]:
-    """The workers of an existing Dask scheduler."""
+def dask_workers(address: str, execute: Execute = execute) -> Iterator[DaskWorkers]:
+    """The workers of an existing Dask scheduler.
+
+    Args:
+        address: Of the scheduler.
+        execute: Executes a task on a worker.
+
+    Raises:
+        BackendError: Dask is missing, or its scheduler does not answer.
+    """
     try:
         from distributed import Client
     except ImportError as error:
@@ -146,7 +154,7 @@ def _scheduler(address: str) -> Iterator[DaskWorkers]:
     except (OSError, ValueError) as error:
         raise BackendError(f"no Dask scheduler answers at {address}: {error}") from None
     with client:
-        yield DaskWorkers(client)
+        yield DaskWorkers(client, execute)
 
 
 class _Execution:
@@ -204,7 +212,7 @@ class _Execution:
         return (time.perf_counter() - self._began) / done * (self._count - done)
 
 
-def _execute_all(
+def execute_all(
     check: Callable[[Run], None],
     runs: list[Run],
     waiting: dict[str, list[Run]],
@@ -212,7 +220,16 @@ def _execute_all(
     progress: Callable[[SweepProgress], None] | None,
     should_stop: Callable[[], bool] | None,
 ) -> None:
-    """Keep all workers busy until all runs are done or the user stops the sweep."""
+    """Keep all workers busy until all runs are done or the user stops the sweep.
+
+    Args:
+        check: Checks the result of a run.
+        runs: All runs, for the progress.
+        waiting: Runs to execute, by identity.
+        pool: The workers.
+        progress: Called a few times per second.
+        should_stop: Called as often; True ends with the results so far.
+    """
     execution = _Execution(check, waiting, pool)
     looked, threads = time.perf_counter(), pool.threads
     while execution.going:

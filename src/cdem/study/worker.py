@@ -13,6 +13,7 @@ import signal
 import sys
 import threading
 import time
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -131,7 +132,7 @@ def _search(case: Case, search: dict[str, Any], tell: Tell) -> dict[str, Any]:
     return {"status": "found", "critical": found.as_dict()}
 
 
-def serve() -> None:
+def serve(execute: Callable[[dict[str, Any]], dict[str, Any]] = execute) -> None:
     """Execute tasks from stdin until it closes: the sweep has then ended, and so does this process."""
     signal.signal(
         signal.SIGINT, signal.SIG_IGN

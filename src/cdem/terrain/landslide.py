@@ -19,7 +19,7 @@ from cdem.terrain import files, surfaces
 from cdem.terrain.features import read_features
 from cdem.terrain.heights import Grid, Heights, Lines, Plane, Smooth
 from cdem.terrain.projection import Projection, horizontal, name_of, short_name, utm_zone
-from cdem.terrain.rasters import read_raster
+from cdem.terrain.rasters import Box, read_raster
 from cdem.terrain.resample import (
     Wanted,
     filled,
@@ -111,7 +111,7 @@ class Landslide(LandslideParts):
         if by.points is not None:
             with self._source.blame("surface.points"):
                 path = self._source.folder / by.points
-                return surfaces.through_points(path, by.columns, self._bring(path, by.crs))
+                return surfaces.through_points(path, by.columns, self.bring(path, by.crs))
         return self._heights("surface", by)
 
     def planes(self, planes: Iterable[PlaneBy]) -> list[Plane]:
@@ -126,12 +126,12 @@ class Landslide(LandslideParts):
         by = given if isinstance(given, OutlineFile) else OutlineFile(file=given)
         with self._source.blame(f"bodies.{index}.outline"):
             path = self._source.folder / by.file
-            bring = self._bring(path, by.crs)
+            bring = self.bring(path, by.crs)
             corners, notes = files.read_outline(path, by.layer, by.where, bring)
         self.projection.tell(*notes)
         return corners
 
-    def _bring(self, path: Path, told: str | None, unit: str | None = None) -> files.Bring:
+    def bring(self, path: Path, told: str | None, unit: str | None = None) -> files.Bring:
         """Function that transforms points of a file, and their heights if any, to metres."""
 
         def bring(label: str | None, points: Floats) -> Floats:
@@ -188,7 +188,7 @@ class Landslide(LandslideParts):
         if isinstance(by, PlaneBy):
             return Plane(by.dip, by.dip_direction, tuple(by.through))  # type: ignore[arg-type]
         path = self._source.folder / by.through_lines
-        lines = files.read_lines(path, None, self._bring(path, None))
+        lines = files.read_lines(path, None, self.bring(path, None))
         plane, notes = surfaces.fit_plane(np.concatenate(lines), path.name)
         self.projection.tell(*notes)
         return plane
@@ -202,17 +202,29 @@ class Landslide(LandslideParts):
                 return self._grid(key, given)
             if given.contours is not None:
                 path = self._source.folder / given.contours
-                bring = self._bring(path, given.crs, given.unit)
+                bring = self.bring(path, given.crs, given.unit)
                 lines = files.read_lines(path, given.elevation, bring)
             else:
                 lines = [np.array(line) for line in given.lines or []]
             return Lines(lines, self.sizes.body / 4)
 
     def _grid(self, key: str, given: HeightsBy) -> Grid:
-        path = self._source.folder / str(given.grid)
         x, y = self.extent.x, self.extent.y
         margin = 4 * self.terrain.smooth if key == "terrain" else 0.0
         box = np.array([x[0], y[0]]) - margin, np.array([x[1], y[1]]) + margin
+        return self.grid_within(given, box)
+
+    def grid_within(self, given: HeightsBy, box: Box) -> Grid:
+        """A grid of heights in the common projection.
+
+        Args:
+            given: The file and how to read it.
+            box: South-west and north-east corner of the required part [m].
+
+        Raises:
+            CaseError: The file cannot be read or has no heights there.
+        """
+        path = self._source.folder / str(given.grid)
         wanted = Wanted(box, given.crs, given.cell, given.unit, given.nodata, given.classes)
         grid = read_heights(path, self.projection, wanted)
         if given.fill is None:
