@@ -24,6 +24,7 @@ FOLDERS = {
     "run": "stages, progress, result folder, resume",
     "output": "text, plots, pictures, files, viewer",
     "study": "sweeps, factor of safety, tests of laws",
+    "rockfall": "blocks that fall over terrain, their statistics",
     "screening": "closed-form factors of safety over maps",
     "verification": "problems with a known answer",
     "tools": "doctor, benchmark, build of own laws",

@@ -35,6 +35,10 @@ VERBS = {
         "Find the value at which a case fails, by bisection of its last, static stage.",
     ),
     "sweep": ("study", "Run a study: many variants of a case."),
+    "rockfall": (
+        "rockfall",
+        "Let hundreds of blocks fall over a terrain; heights, energies and counts at barriers.",
+    ),
     "verify": (
         "installation",
         "Compute problems with known answers and compare; exit status 3 if one is missed.",

@@ -1,4 +1,4 @@
-"""Points, lines and areas of a run-out as a GeoPackage with styles: runout.gpkg."""
+"""Points, lines and areas as a GeoPackage with styles."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from cdem.terrain.heights import extra
 from cdem.terrain.rasters import Raster
 
-WHAT = "runout.gpkg"
+WHAT = "a GeoPackage"
 STYLES = "layer_styles"
 """The table of styles for QGIS."""
 
@@ -109,7 +109,7 @@ def _styles(layers: Sequence[Features]) -> dict[str, NDArray]:
         "styleQML": np.array([vector_style(layer) for layer in layers], dtype=object),
         "styleSLD": all_are(""),
         "useAsDefault": np.ones(count, bool),
-        "description": all_are("written by cdem runout"),
+        "description": all_are("written by cdem"),
         "owner": all_are(""),
     }
 

@@ -140,7 +140,7 @@ class Maps:
         }
         given = classes or {}
         limits = {
-            name: [float(v) for v in given.get(name, _limits(name, raster.values))]
+            name: [float(v) for v in given.get(name, limits_of(name, raster.values))]
             for name, raster in kept.items()
         }
         return cls(kept, flow, from_frames, over(np.where(met, 1.0, np.nan)), limits)
@@ -205,7 +205,7 @@ def _spread(deposit: Deposit, flow: FlowMaps) -> Floats:
     return out
 
 
-def _limits(name: str, values: Floats) -> list[float]:
+def limits_of(name: str, values: Floats) -> list[float]:
     """Limits of classes at round numbers: from 0, or symmetric about 0."""
     most = float(np.nanmax(np.abs(values), initial=0.0))
     if not most > 0:

@@ -132,7 +132,7 @@ def _draw(axes: Any, figure: Any, maps: Maps, name: str, view: View) -> Any:
     """One map and its colour bar: hillshade, layer in its classes, source, path, sections, outline, scale, north."""
     from matplotlib.colors import BoundaryNorm, ListedColormap
 
-    _shade(axes, view.ground)
+    shade(axes, view.ground)
     raster, limits = maps.rasters[name], maps.classes[name]
     colors = ListedColormap(colors_of(LAYERS[name], len(limits) - 1))
     image = axes.imshow(
@@ -150,8 +150,8 @@ def _draw(axes: Any, figure: Any, maps: Maps, name: str, view: View) -> Any:
     for k, line in enumerate(view.outline):
         axes.plot(*line.T, "-", color="m", lw=1.3, label=None if k else "mapped")
     axes.set(xlim=(view.west, view.east), ylim=(view.south, view.north), aspect="equal")
-    _label(axes)
-    _scale_and_north(axes, view)
+    label_axes(axes)
+    scale_and_north(axes, (view.west, view.east, view.south, view.north))
     return bar
 
 
@@ -168,8 +168,8 @@ def _outline_of(raster: Raster) -> Any:
     return LineCollection(list(edges), colors="k", linewidths=1.0, linestyles=":")
 
 
-def _shade(axes: Any, ground: Raster) -> None:
-    """Hillshade and contour lines of the ground; white for missing ground."""
+def shade(axes: Any, ground: Raster) -> None:
+    """Draw hillshade and contour lines of the ground; white for missing ground."""
     z = ground.values
     if min(z.shape) < 2 or not np.isfinite(z).any():
         return
@@ -198,7 +198,7 @@ def hillshade(z: Floats, cell: float) -> Floats:
     return np.clip(light / np.sqrt(1 + to_east**2 + to_north**2), 0.0, 1.0)
 
 
-def _label(axes: Any) -> None:
+def label_axes(axes: Any) -> None:
     """Coordinates in full, on both sides of a map upright or not."""
     from matplotlib.ticker import MaxNLocator, StrMethodFormatter
 
@@ -211,12 +211,18 @@ def _label(axes: Any) -> None:
     axes.spines[["top", "right"]].set_visible(True)
 
 
-def _scale_and_north(axes: Any, view: View) -> None:
-    """A bar of a round length in the lower left corner, an arrow to the north in the upper left."""
-    wide, high = view.east - view.west, view.north - view.south
+def scale_and_north(axes: Any, edges: tuple[float, float, float, float]) -> None:
+    """A bar of a round length in the lower left corner, an arrow to the north in the upper left.
+
+    Args:
+        axes: A map.
+        edges: Its west, east, south and north [m].
+    """
+    west, east, south, north = edges
+    wide, high = east - west, north - south
     power = 10.0 ** np.floor(np.log10(wide / 4))
     length = float(max(f for f in (1, 2, 5) if f * power <= wide / 4) * power)
-    x, y = view.west + 0.04 * wide, view.south + 0.05 * high
+    x, y = west + 0.04 * wide, south + 0.05 * high
     halo = {"boxstyle": "round,pad=0.15", "fc": "w", "ec": "none", "alpha": 0.7}
     axes.plot([x, x + length], [y, y], "k-", lw=3, solid_capstyle="butt", zorder=5)
     axes.annotate(

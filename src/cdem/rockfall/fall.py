@@ -204,7 +204,7 @@ class _Run:
         try:
             while not self.out.status:
                 motion = self._window(motion)
-        except UnstableError as error:
+        except (UnstableError, np.linalg.LinAlgError) as error:
             self.out.status, self.out.why = FAILED, str(error)
         self.out.samples = np.array(self._rows)
 
