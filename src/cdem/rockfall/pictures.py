@@ -61,10 +61,10 @@ def _draw_map(result: Result, rasters: Mapping[str, Raster], path: Path, plt: An
     wide, high = edges[1] - edges[0], edges[3] - edges[2]
     beside = high > wide  # upright maps are placed side by side
     size = 5.0 if beside else 7.0
-    each = float(np.clip(size * high / wide, 0.4 * size, 1.9 * size))
+    each = float(np.clip(0.85 * size * high / wide, 0.3 * size, 1.9 * size))
     shape = (1, 2) if beside else (2, 1)
     figure, (left, right) = plt.subplots(
-        *shape, figsize=(size * 1.15 * shape[1], (each + 1.0) * shape[0]), layout="constrained"
+        *shape, figsize=(size * 1.15 * shape[1], (each + 0.5) * shape[0]), layout="constrained"
     )
     _ground(left, result, edges)
     _tracks(left, figure, result)
@@ -76,7 +76,7 @@ def _draw_map(result: Result, rasters: Mapping[str, Raster], path: Path, plt: An
         axes.set(xlim=edges[:2], ylim=edges[2:], aspect="equal")
         label_axes(axes)
         scale_and_north(axes, edges)
-    figure.savefig(path)
+    figure.savefig(path, bbox_inches="tight")
     plt.close(figure)
     return path
 

@@ -33,8 +33,13 @@ class Quantile:
 
     def text(self, scale: float = 1.0) -> str:
         """``12.3 (10.1 to 18)``; an open end is a question mark."""
-        low, high = ("?" if v is None else f"{v * scale:.3g}" for v in (self.low, self.high))
-        return f"{self.value * scale:.3g} ({low} to {high})"
+        low, high = ("?" if v is None else short(v * scale) for v in (self.low, self.high))
+        return f"{short(self.value * scale)} ({low} to {high})"
+
+
+def short(number: float) -> str:
+    """A number with three digits, or its whole part: ``0.123``, ``1,234``."""
+    return f"{number:,.0f}" if abs(number) >= 999.5 else f"{number:.3g}"
 
 
 def quantile_of(values: Floats, level: float) -> Quantile:

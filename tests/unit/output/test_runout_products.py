@@ -244,7 +244,7 @@ def test_without_the_extra_maps_are_written_and_the_geopackage_is_not(slid, run_
         monkeypatch.setitem(sys.modules, name, None)
     status, out, err = run_cli("runout", str(slid))
     assert status == 0
-    assert "no runout.gpkg: runout.gpkg needs" in err
+    assert "no runout.gpkg: a GeoPackage needs" in err
     assert "pip install 'cdem[terrain]'" in err
     assert str(slid / "maps") in out.split()
     assert (slid / "maps" / "thickness_max.tif").is_file()
