@@ -72,9 +72,7 @@ def draw(wish: Wish, number: int, ground: Ground) -> Start:
         number: Of the run, from 0.
         ground: The ground.
     """
-    random = {
-        name: np.random.default_rng([wish.seed, number, k]) for k, name in enumerate(STREAMS)
-    }
+    random = {name: np.random.default_rng([wish.seed, number, k]) for k, name in enumerate(STREAMS)}
     names = list(wish.shapes)
     shares = np.cumsum([wish.shapes[name].share for name in names])
     pick = int(np.searchsorted(shares, random["shape"].random() * shares[-1], side="right"))

@@ -177,9 +177,7 @@ def case_of(
 class _Run:
     """A run with one stiffness."""
 
-    def __init__(
-        self, ground: Ground, boulder: Boulder, physics: Physics, modulus: float
-    ) -> None:
+    def __init__(self, ground: Ground, boulder: Boulder, physics: Physics, modulus: float) -> None:
         self._ground, self._boulder, self._physics = ground, boulder, physics
         mesh = polyhedron(BLOCK, boulder.vertices)
         self._faces = outward_faces(boulder.vertices, None)

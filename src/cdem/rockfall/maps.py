@@ -70,9 +70,7 @@ def _values(found: list[Cells], size: int, runs: int, least: int) -> dict[str, F
     return values
 
 
-def quantiles(
-    number: NDArray[np.int64], of: Floats, size: int, level: float, least: int
-) -> Floats:
+def quantiles(number: NDArray[np.int64], of: Floats, size: int, level: float, least: int) -> Floats:
     """A quantile in each cell, linear between the values by rank, as `numpy.quantile`.
 
     Args:
@@ -105,9 +103,7 @@ def write_maps(result: Result, rasters: Mapping[str, Raster], folder: Path) -> l
         tags = {"cdem_quantity": layer.title, "cdem_runs": str(len(result.rows))}
         if name.endswith("_95"):
             tags["cdem_least_passes"] = str(least)
-        write_geotiff(
-            path, raster, epsg=epsg_of(crs), name=name, unit=layer.unit, tags=tags
-        )
+        write_geotiff(path, raster, epsg=epsg_of(crs), name=name, unit=layer.unit, tags=tags)
         path.with_suffix(".qml").write_text(raster_style(layer, limits_of(name, raster.values)))
         paths += [path, path.with_suffix(".qml")]
     return paths

@@ -170,7 +170,9 @@ class Result:
                 "after are unknown: use a larger extent"
             )
         if n := count.get(OVER, 0):
-            said.append(f"{n} blocks still moved after {self.runs.rockfall.duration:g} s: raise duration")
+            said.append(
+                f"{n} blocks still moved after {self.runs.rockfall.duration:g} s: raise duration"
+            )
         if n := count.get(THROUGH, 0) + count.get(FAILED, 0):
             said.append(
                 f"{n} runs failed in spite of stiffer contacts; runs.csv names them: their tracks "

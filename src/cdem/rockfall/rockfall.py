@@ -15,16 +15,16 @@ from cdem.case.explain import explain
 from cdem.case.reader import load_case_data, plain
 from cdem.case.source import Source
 from cdem.errors import CaseError
+from cdem.model.slips import DEEP
 from cdem.rockfall.blocks import Wish
 from cdem.rockfall.fall import GRAVITY, Physics
 from cdem.rockfall.ground import Ground
 from cdem.rockfall.schema import Drawn, OutlineFile, RockfallParts, check_drawn
 from cdem.rockfall.starts import Starts, triangles_of
-from cdem.model.slips import DEEP
 from cdem.study.sampling import quantile
+from cdem.terrain.clouds import KINDS
 from cdem.terrain.features import read_features
 from cdem.terrain.files import read_outline
-from cdem.terrain.clouds import KINDS
 from cdem.terrain.heights import Grid, Smooth
 from cdem.terrain.landslide import Landslide
 from cdem.terrain.rasters import Box, read_raster
@@ -267,7 +267,9 @@ class Rockfall(RockfallParts):
         """Speed after a fall without any loss from the highest start to the lowest ground [m/s]."""
         height = _most(self.starts.height, "m")
         drop = float(np.nanmax(ground.height(starts.corners)) - np.nanmin(ground.heights)) + height
-        return float(np.sqrt(2 * GRAVITY * max(drop, 1.0) + _most(self.starts.velocity, "m/s") ** 2))
+        return float(
+            np.sqrt(2 * GRAVITY * max(drop, 1.0) + _most(self.starts.velocity, "m/s") ** 2)
+        )
 
     def cell(self, ground: Ground) -> float:
         """Side of a cell of the maps [m]."""

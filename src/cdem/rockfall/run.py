@@ -7,7 +7,6 @@ import json
 from collections.abc import Callable
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -132,7 +131,11 @@ def run_rockfall(
         if run.result is None:
             waiting[run.identity] = [run]
     if waiting:
-        pool = LocalWorkers(workers, PROGRAM) if scheduler is None else dask_workers(scheduler, execute)
+        pool = (
+            LocalWorkers(workers, PROGRAM)
+            if scheduler is None
+            else dask_workers(scheduler, execute)
+        )
         with pool as open_pool:
             execute_all(lambda _: None, found.runs, waiting, open_pool, progress, should_stop)
     return found

@@ -100,7 +100,10 @@ def _with_sides(name: str, given: Any) -> Any:
     given = {"share": given} if isinstance(given, int | float | str) else given
     if name not in SIDES or not isinstance(given, dict):
         return given
-    return {"sides": list(SIDES[name]), "corners": "rounded" if name == "rounded" else "box"} | given
+    return {
+        "sides": list(SIDES[name]),
+        "corners": "rounded" if name == "rounded" else "box",
+    } | given
 
 
 Corners = Annotated[list[Point2], Field(min_length=3), Listed]
@@ -110,10 +113,15 @@ Points = Annotated[list[Point2], Field(min_length=2), Listed]
 class StartsBy(Part):
     """Where and how blocks start."""
 
-    line: Points | None = Field(None, description="Corners of a line [m]; starts are evenly along it")
-    area: Corners | None = Field(None, description="Corners of an area [m]; starts are evenly in it")
+    line: Points | None = Field(
+        None, description="Corners of a line [m]; starts are evenly along it"
+    )
+    area: Corners | None = Field(
+        None, description="Corners of an area [m]; starts are evenly in it"
+    )
     file: Name | None = Field(
-        None, description="GIS file of points, lines or areas, of one kind: starts are evenly on them"
+        None,
+        description="GIS file of points, lines or areas, of one kind: starts are evenly on them",
     )
     layer: Name | None = Field(None, description="Layer of the file, if there are several")
     where: dict[Name, Any] = Field({}, description="Use only features with these properties")
@@ -146,12 +154,10 @@ class Surface(Part):
     friction_angle: Annotated[float, Quantity("deg", at_least=0, below=90)] = Field(
         description="Friction angle [deg]"
     )
-    restitution: (
-        Annotated[
-            Annotated[Coefficient, Tag("value")] | Annotated[Restitution, Tag("each")],
-            Discriminator(lambda v: "each" if isinstance(v, dict | Restitution) else "value"),
-        ]
-    ) = Field(description="Coefficient of restitution [1]: one, or {normal: 0.4, tangential: 0.8}")
+    restitution: Annotated[
+        Annotated[Coefficient, Tag("value")] | Annotated[Restitution, Tag("each")],
+        Discriminator(lambda v: "each" if isinstance(v, dict | Restitution) else "value"),
+    ] = Field(description="Coefficient of restitution [1]: one, or {normal: 0.4, tangential: 0.8}")
     rolling_resistance: Annotated[float, Quantity("1", at_least=0, below=1)] = Field(
         0.0, description="Rolling resistance [1]"
     )
