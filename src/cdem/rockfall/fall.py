@@ -8,7 +8,7 @@ velocity and spin that it has.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -134,8 +134,9 @@ def fall(ground: Ground, boulder: Boulder, physics: Physics) -> Fall:
 
 
 def case_of(
-    body: dict[str, Any], physics: Physics, radius: float, modulus: float, zones: list[str]
-) -> Case:
+    body: dict[str, Any], physics: Physics, radius: float, modulus: float, zones: list[str],
+    motion: tuple[Floats, Floats],
+) -> Case:  # fmt: skip
     """The case of a window: a loose block on zones of fixed ground.
 
     Args:
@@ -144,11 +145,15 @@ def case_of(
         radius: Of the block [m].
         modulus: Of the contacts [Pa].
         zones: Groups of the ground.
+        motion: Velocity [m/s] and spin [rad/s] of the block.
     """
+    velocity, spin = (row.tolist() for row in motion)
     pairs: list[dict[str, Any]] = [
         {
             "between": [BLOCK, zone],
             "contact_stiffness": modulus / radius,
+            "cohesion": 0.0,  # or the block would stick to ground that it touches at the start
+            "tensile_strength": 0.0,
             **physics.contacts[int(zone.removeprefix(f"{NAME}_"))],
         }
         for zone in zones
@@ -163,7 +168,7 @@ def case_of(
             },
             "materials": {"rock": rock | {"young_modulus": physics.stiffening * modulus}},
             "groups": {
-                BLOCK: {"material": "rock"},
+                BLOCK: {"material": "rock", "velocity": velocity, "angular_velocity": spin},
                 **{zone: {"material": "rock", "fix": ["x", "y", "z"]} for zone in zones},
             },
             "interfaces": {"default": seams, "pairs": pairs},
@@ -183,7 +188,7 @@ class _Run:
         self._faces = outward_faces(boulder.vertices, None)
         self._mesh = mesh
         self._body = RigidBlock(mesh.points, mesh.cells["tet4"], physics.density)
-        self._position = mesh.points
+        self._position = self._velocity = mesh.points
         self._quiet, self._time = Quiet(), 0.0
         self._rows: list[Floats] = []
         self._before: Motion | None = None
@@ -197,7 +202,12 @@ class _Run:
         arm = self._position - self._position.mean(axis=0)
         centre = self._body.motion(self._position, 0 * arm).centre
         velocity = self._boulder.velocity + np.cross(self._boulder.spin, self._position - centre)
-        motion = self._body.motion(self._position, velocity)
+        motion = replace(
+            self._body.motion(self._position, velocity),  # without the rounding of its sums
+            velocity=self._boulder.velocity,
+            spin=self._boulder.spin,
+        )
+        self._velocity = velocity
         self._note(motion, self._position)
         try:
             while not self.out.status:
@@ -224,11 +234,13 @@ class _Run:
         begin, points = self._time, self._position - origin
         vertices = points[: len(self._boulder.vertices)]
         body = {"vertices": vertices.tolist(), "faces": self._faces}
-        case = case_of(body, self._physics, self._body.radius, self.out.modulus, window.group_names)
+        case = case_of(
+            body, self._physics, self._body.radius, self.out.modulus, window.group_names,
+            (motion.velocity, motion.spin),
+        )  # fmt: skip
         sim = Simulation(case, threads=1, more=window)
         nodes = _places(sim, points)
-        velocity = motion.velocity + np.cross(motion.spin, self._position - motion.centre)
-        rows_of(sim.core, "node.motion").velocity[nodes] = velocity
+        rows_of(sim.core, "node.motion").velocity[nodes] = self._velocity
         self.out.windows += 1
         self._before = None
         last = motion
@@ -255,6 +267,7 @@ class _Run:
         whole = energies["kinetic"] + energies["strain"]
         self.out.lost += whole - last.translation - last.rotation
         self._position = self._body.placed(self._position)
+        self._velocity = last.velocity + np.cross(last.spin, self._position - last.centre)
 
     def _end(self, motion: Motion) -> str:
         """How the run ends now, or nothing."""

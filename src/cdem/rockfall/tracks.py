@@ -92,7 +92,7 @@ def crossings(track: Track, line: Floats) -> tuple[Floats, Floats]:
         numbers.append(at[on] + part[on])
         along.append(walked + place[on])
         walked += length
-    number, distance = np.concatenate(numbers), np.concatenate(along)
+    number, distance = (np.concatenate([np.zeros(0), *parts]) for parts in (numbers, along))
     order = np.argsort(number, kind="stable")
     return number[order], distance[order]
 
