@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from cdem.mesh.primitives import polyhedron
+from cdem.mesh.primitives import outward_faces, polyhedron
 from cdem.rockfall.fall import BLOCK, Boulder
 from cdem.rockfall.ground import Ground
 from cdem.rockfall.schema import Drawn, Shape
@@ -55,13 +55,11 @@ class Start:
         boulder: The block.
         shape: Name of its shape.
         volume: [m3].
-        place: Of its centre [m].
     """
 
     boulder: Boulder
     shape: str
     volume: float
-    place: Floats
 
 
 def draw(wish: Wish, number: int, ground: Ground) -> Start:
@@ -78,17 +76,16 @@ def draw(wish: Wish, number: int, ground: Ground) -> Start:
     pick = int(np.searchsorted(shares, random["shape"].random() * shares[-1], side="right"))
     name = names[min(pick, len(names) - 1)]
     volume = value(wish.volume, random["volume"].random(), "m3")
-    corners = body(wish.shapes[name], random["corners"], volume)
+    corners, faces = body(wish.shapes[name], random["corners"], volume)
     corners = corners @ attitude(random["attitude"]).T
     xy = wish.starts.place(random["place"])
     height = value(wish.height, random["height"].random(), "m")
     speed = value(wish.velocity, random["velocity"].random(), "m/s")
-    corners = above(corners, xy, ground, height)
+    corners = above(corners, faces, xy, ground, height)
     slope = ground.plane(xy)[1]
     steep = float(np.linalg.norm(slope))
     way = -slope / steep if steep > 0 else np.zeros(2)
-    velocity = np.array([*(speed * way), 0.0])
-    return Start(Boulder(corners, velocity), name, volume, np.array([*xy, centre_of(corners)[2]]))
+    return Start(Boulder(corners, np.array([*(speed * way), 0.0]), faces=faces), name, volume)
 
 
 def value(drawn: Drawn, u: float, unit: str) -> float:
@@ -101,13 +98,18 @@ def value(drawn: Drawn, u: float, unit: str) -> float:
     return number if drawn.unit is None else to_number(f"{number!r} {drawn.unit}", unit)
 
 
-def body(shape: Shape, random: np.random.Generator, volume: float) -> Floats:
-    """Corners of a convex block around its centre of mass [m], shape (corners, 3).
+def body(
+    shape: Shape, random: np.random.Generator, volume: float
+) -> tuple[Floats, list[list[int]]]:
+    """A convex block around its centre of mass.
 
     Args:
         shape: Its sides and its kind.
         random: Displaces the corners.
         volume: [m3].
+
+    Returns:
+        Its corners [m], shape (corners, 3), and the corners of each face, outward.
     """
     if shape.corners == "box":
         signs = (-1.0, 1.0)
@@ -118,14 +120,10 @@ def body(shape: Shape, random: np.random.Generator, volume: float) -> Floats:
         points += random.uniform(-UNEVEN, UNEVEN, points.shape)
         points /= np.linalg.norm(points, axis=1)[:, None]
     points *= shape.sides
-    mesh = polyhedron(BLOCK, points)
-    points = points - mesh.points[-1]
-    return points * (volume / _volume(mesh.points, mesh.cells["tet4"])) ** (1 / 3)
-
-
-def centre_of(corners: Floats) -> Floats:
-    """Centre of mass of a convex block [m]."""
-    return polyhedron(BLOCK, corners).points[-1]
+    faces = outward_faces(points, None)
+    mesh = polyhedron(BLOCK, points, faces)
+    scale = (volume / _volume(mesh.points, mesh.cells["tet4"])) ** (1 / 3)
+    return (points - mesh.points[-1]) * scale, faces
 
 
 def _volume(points: Floats, tets: NDArray) -> float:
@@ -159,20 +157,22 @@ def attitude(random: np.random.Generator) -> Floats:
     )
 
 
-def above(corners: Floats, xy: Floats, ground: Ground, height: float) -> Floats:
+def above(
+    corners: Floats, faces: list[list[int]], xy: Floats, ground: Ground, height: float
+) -> Floats:
     """A block over a place in plan, with this least vertical distance from the ground [m].
 
     Args:
         corners: Of the block around its centre [m], shape (corners, 3).
+        faces: Corners of each face.
         xy: Place of its centre [m].
         ground: The ground.
         height: [m].
     """
-    mesh = polyhedron(BLOCK, corners)
-    faces = mesh.cells["tet4"][:, :3]  # the fourth point of each tet is the centre
+    triangles = [(f[0], f[k], f[k + 1]) for f in faces for k in range(1, len(f) - 1)]
     steps = [(i, j) for i in range(FINE + 1) for j in range(FINE + 1 - i)]
     weights = np.array([(i, j, FINE - i - j) for i, j in steps]) / FINE
-    surface = np.einsum("wk,fki->fwi", weights, mesh.points[faces]).reshape(-1, 3)
+    surface = np.einsum("wk,fki->fwi", weights, corners[np.array(triangles)]).reshape(-1, 3)
     there = ground.height(surface[:, :2] + xy)
     there = np.where(np.isfinite(there), there, -np.inf)
     lift = float((there - surface[:, 2]).max()) + height

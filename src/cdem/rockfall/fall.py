@@ -77,11 +77,13 @@ class Boulder:
         vertices: Corners of a convex body [m], shape (corners, 3).
         velocity: [m/s].
         spin: [rad/s].
+        faces: Corners of each face, outward; by default they are found.
     """
 
     vertices: Floats
     velocity: Floats
     spin: Floats = field(default_factory=lambda: np.zeros(3))
+    faces: list[list[int]] | None = None
 
 
 @dataclass
@@ -184,9 +186,8 @@ class _Run:
 
     def __init__(self, ground: Ground, boulder: Boulder, physics: Physics, modulus: float) -> None:
         self._ground, self._boulder, self._physics = ground, boulder, physics
-        mesh = polyhedron(BLOCK, boulder.vertices)
-        self._faces = outward_faces(boulder.vertices, None)
-        self._mesh = mesh
+        self._faces = boulder.faces or outward_faces(boulder.vertices, None)
+        mesh = polyhedron(BLOCK, boulder.vertices, self._faces)
         self._body = RigidBlock(mesh.points, mesh.cells["tet4"], physics.density)
         self._position = self._velocity = mesh.points
         self._quiet, self._time = Quiet(), 0.0

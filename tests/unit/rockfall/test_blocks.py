@@ -35,8 +35,8 @@ def test_a_run_depends_on_its_number_alone():
 
 
 def test_blocks_have_the_drawn_volumes_and_shapes_and_stand_clear():
-    starts = [draw(wish(), number, SLOPE) for number in range(150)]
-    for start in starts[:40]:
+    starts = [draw(wish(), number, SLOPE) for number in range(100)]
+    for start in starts[:25]:
         mesh = polyhedron("block", start.boulder.vertices)
         body = RigidBlock(mesh.points, mesh.cells["tet4"], 1.0)
         assert body.volume == pytest.approx(start.volume, rel=1e-9)
@@ -44,16 +44,18 @@ def test_blocks_have_the_drawn_volumes_and_shapes_and_stand_clear():
         clear = corners[:, 2] - SLOPE.height(corners[:, :2])
         assert clear.min() == pytest.approx(0.3, abs=1e-9)  # on a plane a corner is the lowest
         assert 8 <= len(corners) <= 14
-    shares = [sum(s.shape == name for s in starts) / 150 for name in wish().shapes]
-    assert max(abs(share - 0.25) for share in shares) < 0.12
-    y = np.array([start.place[1] for start in starts])
+    shares = [sum(s.shape == name for s in starts) / 100 for name in wish().shapes]
+    assert max(abs(share - 0.25) for share in shares) < 0.15
+    y = np.array([start.boulder.vertices[:, 1].mean() for start in starts])
     assert abs(np.mean(y) - 40) < 5
-    assert (y >= 10).all()
+    assert (y > 9.5).all()
 
 
 def test_values_have_units():
     assert value(Drawn(values=["2 km", 5.0]), 0.1, "m") == 2000.0
-    assert value(Drawn(uniform={"low": 1, "high": 3}, unit="km/h"), 0.5, "m/s") == pytest.approx(2 / 3.6)
+    assert value(Drawn(uniform={"low": 1, "high": 3}, unit="km/h"), 0.5, "m/s") == pytest.approx(
+        2 / 3.6
+    )
 
 
 def test_an_area_is_filled_evenly():

@@ -39,13 +39,17 @@ def test_a_box_is_placed_as_it_lies(box):
     stretched = 1.01 * (there - there.mean(axis=0)) + there.mean(axis=0)
     placed = body.placed(stretched)
     spread = np.linalg.norm(placed - placed.mean(axis=0), axis=1)
-    np.testing.assert_allclose(spread, np.linalg.norm(points - points.mean(axis=0), axis=1), atol=1e-12)
+    np.testing.assert_allclose(
+        spread, np.linalg.norm(points - points.mean(axis=0), axis=1), atol=1e-12
+    )
 
 
 def test_attitudes_are_rotations_of_all_directions():
     random = np.random.default_rng(1)
     turns = np.array([attitude(random) for _ in range(4000)])
-    np.testing.assert_allclose(turns @ turns.transpose(0, 2, 1), np.eye(3)[None].repeat(4000, 0), atol=1e-12)
+    np.testing.assert_allclose(
+        turns @ turns.transpose(0, 2, 1), np.eye(3)[None].repeat(4000, 0), atol=1e-12
+    )
     np.testing.assert_allclose(np.linalg.det(turns), 1.0)
     # each component of a random unit vector has mean 0 and variance 1/3
     assert np.abs(turns.mean(axis=0)).max() < 5 / np.sqrt(3 * 4000)

@@ -39,7 +39,9 @@ def test_a_throw_passes_at_the_height_of_its_parabola():
     assert found["velocity"][0] == pytest.approx(np.hypot(u, w - g * when), rel=1e-6)
     assert found["energy"][0] == pytest.approx(50 * (u**2 + (w - g * when) ** 2) + 40, rel=1e-5)
     assert found["azimuth"][0] == pytest.approx(90.0)
-    assert found["inclination"][0] == pytest.approx(np.degrees(np.arctan2(w - g * when, u)), abs=1e-3)
+    assert found["inclination"][0] == pytest.approx(
+        np.degrees(np.arctan2(w - g * when, u)), abs=1e-3
+    )
 
 
 def test_the_height_normal_to_a_slope():
@@ -54,7 +56,9 @@ def test_the_height_normal_to_a_slope():
 def test_every_passage_counts_and_corners_count_once():
     line = np.array([[0.0, -10], [0.0, 0.0], [10.0, 10.0]])
     there_and_back = track(
-        np.arange(4), np.array([[-1, -5, 0], [1, -5, 0], [-1, -5, 0], [-1, 30, 0.0]]), np.ones((4, 3))
+        np.arange(4),
+        np.array([[-1, -5, 0], [1, -5, 0], [-1, -5, 0], [-1, 30, 0.0]]),
+        np.ones((4, 3)),
     )
     number, along = crossings(there_and_back, line)
     np.testing.assert_allclose(number, [0.5, 1.5])
