@@ -165,11 +165,11 @@ class SchemaReference(Directive):
     def run(self):
         """Sections of the whole schema."""
         from cdem.case.case import Case
+        from cdem.rockfall.rockfall import Rockfall
         from cdem.study.study import Study
 
-        return list(
-            Reference({"case": Case, "study": Study}[self.arguments[0]].schema()).sections()
-        )
+        kinds = {"case": Case, "study": Study, "rockfall": Rockfall}
+        return list(Reference(kinds[self.arguments[0]].schema()).sections())
 
 
 def setup(app):

@@ -25,6 +25,7 @@ STARTS = {
     "case": "'cdem new incline' writes one to start from",
     "study": "see docs/sweep.md",
     "distribution": "see docs/screening.md",
+    "rockfall": "'cdem new rockfall_runs' writes one to start from",
 }
 """Where to look for the content of an empty file, for each kind of file."""
 

@@ -192,13 +192,14 @@ def mesh(
 
 def schema(
     of: Annotated[
-        Literal["case", "study", "uncertain"], typer.Argument(help="Kind of file.")
+        Literal["case", "study", "rockfall", "uncertain"], typer.Argument(help="Kind of file.")
     ] = "case",
 ) -> None:
-    """Print the JSON schema of a case, a study or uncertain values, for editors."""
+    """Print the JSON schema of a kind of file, for editors."""
     from cdem.case.case import Case
+    from cdem.rockfall.rockfall import Rockfall
     from cdem.screening.uncertain import Uncertain
     from cdem.study.study import Study
 
-    kinds = {"case": Case.schema, "study": Study.schema, "uncertain": Uncertain.schema}
-    print(json.dumps(kinds[of](), indent=2))
+    kinds = {"case": Case, "study": Study, "rockfall": Rockfall, "uncertain": Uncertain}
+    print(json.dumps(kinds[of].schema(), indent=2))

@@ -26,10 +26,7 @@ VERBS = {
         "screening",
         "Map the factor of safety over terrain: wedges and planes of joints, by closed forms.",
     ),
-    "schema": (
-        "model",
-        "Print the JSON schema of a case, a study or uncertain values, for editors.",
-    ),
+    "schema": ("model", "Print the JSON schema of a kind of file, for editors."),
     "critical": (
         "study",
         "Find the value at which a case fails, by bisection of its last, static stage.",

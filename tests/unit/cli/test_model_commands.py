@@ -35,6 +35,7 @@ def test_new_lists_and_writes_templates(run_cli, cube_folder):
         "quake",
         "road_cut",
         "rockfall",
+        "rockfall_runs",
         "safety",
         "slope",
         "toppling",
@@ -45,7 +46,9 @@ def test_new_lists_and_writes_templates(run_cli, cube_folder):
     ]
     for name in names:
         assert run_cli("new", name, "cases")[0] == 0
-        if name != "landslide_dem":  # is to be meshed first
+        if name == "rockfall_runs":
+            assert Rockfall.load(cube_folder / "cases" / f"{name}.yaml").title
+        elif name != "landslide_dem":  # is to be meshed first
             assert Case.load(cube_folder / "cases" / f"{name}.yaml").title
     assert all(
         (cube_folder / "cases" / file).exists() for file in ("slope.msh", "blast.msh", "valley.asc")
@@ -99,6 +102,7 @@ def test_schema_is_json(run_cli):
     assert "materials" in json.loads(out)["properties"]
     assert "parameters" in json.loads(run_cli("schema", "study")[1])["properties"]
     assert "sampling" in json.loads(run_cli("schema", "uncertain")[1])["properties"]
+    assert "barriers" in json.loads(run_cli("schema", "rockfall")[1])["properties"]
 
 
 def test_a_warning_is_told_once_and_strict_refuses_it(run_cli, cube_folder):
