@@ -27,6 +27,7 @@ from mutant_list import (
     output,
     package,
     ranks,
+    rockfall,
     run,
     screening,
     seismic,
@@ -51,6 +52,7 @@ PYTHON = [
 CORE = [
     bindings,
     ranks,
+    rockfall,
     core_rest,
     core_surface,
     core_water,

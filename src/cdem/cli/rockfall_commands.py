@@ -53,8 +53,8 @@ def rockfall(
 
     given = Rockfall.load(rockfall_file, settings or ())
     folder = output or Path(f"{rockfall_file.stem}.rockfall")
-    if overwrite and (folder / OWN).is_file():
-        shutil.rmtree(folder)
+    if overwrite and (folder / OWN).is_file() and not (folder / "runs").is_symlink():
+        shutil.rmtree(folder / "runs", ignore_errors=True)
     tty = sys.stderr.isatty()
     with (
         stop_on_signal("stopping, finished runs are kept") as stop,

@@ -43,7 +43,7 @@ def rows_of(path):
 
 
 def test_more_runs_join_those_that_are_done(run_cli, slope, monkeypatch):
-    status, out, err = run_cli("rockfall", "fall.yaml", "--workers", "1")
+    status, out, _err = run_cli("rockfall", "fall.yaml", "--workers", "1")
     assert status == 0
     assert "barrier Road 1: 2 of 2 runs pass, 100 %" in out
     folder = slope / "fall.rockfall"

@@ -7,6 +7,7 @@ import json
 import pytest
 
 from cdem import Case
+from cdem.rockfall.rockfall import Rockfall
 
 pytestmark = pytest.mark.usefixtures("cube_folder")
 
