@@ -45,6 +45,7 @@ PYTHON = [
     output,
     study,
     outcrop,
+    rockfall,
     screening,
     seismic,
     blasts,
@@ -52,7 +53,6 @@ PYTHON = [
 CORE = [
     bindings,
     ranks,
-    rockfall,
     core_rest,
     core_surface,
     core_water,
