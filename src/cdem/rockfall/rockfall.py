@@ -130,6 +130,7 @@ class Rockfall(RockfallParts):
         return Ground(grid.west, grid.south, np.array(grid.step), grid.values, zone)
 
     def _grid(self) -> Grid:
+        _ = self.site.projection  # its own errors name their place
         whole = self._box()
         with self._source.blame("terrain.grid"):
             grid = self.site.grid_within(self.terrain, whole)

@@ -22,7 +22,7 @@ class Quantile:
 
     Attributes:
         level: Fraction below it [1].
-        value: Estimate: linear between the values by rank.
+        value: Estimate: linear between the values by rank, and not below the band.
         low, high: Band of the true quantile; None where the sample is too small to bound it.
     """
 
@@ -55,12 +55,10 @@ def quantile_of(values: Floats, level: float) -> Quantile:
     """
     ordered = np.sort(np.asarray(values, float))
     below, above = ranks_of(len(ordered), level)
-    return Quantile(
-        level,
-        float(np.quantile(ordered, level)),
-        None if below == 0 else float(ordered[below - 1]),
-        None if above > len(ordered) else float(ordered[above - 1]),
-    )
+    low = None if below == 0 else float(ordered[below - 1])
+    high = None if above > len(ordered) else float(ordered[above - 1])
+    value = float(np.quantile(ordered, level))
+    return Quantile(level, value if low is None else max(value, low), low, high)
 
 
 def ranks_of(count: int, level: float) -> tuple[int, int]:
