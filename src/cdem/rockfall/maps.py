@@ -46,7 +46,9 @@ def rasters_of(result: Result) -> dict[str, Raster]:
     found = [cells_of(track, ground, low, cell, columns) for track in result.tracks]
     values = _values(found, rows * columns, len(found), rockfall.maps.passes)
     return {
-        name: Raster(*low.tolist(), cell, (values[name] * layer.scale).reshape(rows, columns))
+        name: Raster(
+            float(low[0]), float(low[1]), cell, (values[name] * layer.scale).reshape(rows, columns)
+        )
         for name, layer in LAYERS.items()
     }
 

@@ -101,7 +101,7 @@ def _tracks(axes: Any, figure: Any, result: Result) -> None:
         energy.append(0.5 * (e[1:] + e[:-1]) / 1e3)
     some = np.concatenate(energy)
     found = LineCollection(
-        np.concatenate(pieces), array=some, cmap="plasma", linewidths=0.7, alpha=0.8, zorder=2
+        list(np.concatenate(pieces)), array=some, cmap="plasma", linewidths=0.7, alpha=0.8, zorder=2
     )
     found.set_clim(0.0, max(float(np.quantile(some, 0.99)), 1e-3))
     axes.add_collection(found)

@@ -74,13 +74,13 @@ class AtBarrier:
     def above(self) -> dict[str, int]:
         """How many first passages exceed the height, the energy, or one of the two."""
         first, b = self.first, self.barrier
-        over = {
+        over: dict[str, Any] = {
             "height": None if b.height is None else first["top"] > b.height,
             "energy": None if b.energy is None else first["energy"] > b.energy,
         }
         found = {name: int(flags.sum()) for name, flags in over.items() if flags is not None}
         if len(found) == 2:
-            found["either"] = int(np.logical_or(*over.values()).sum())
+            found["either"] = int(np.logical_or.reduce(list(over.values())).sum())
         return found
 
     def as_dict(self) -> dict[str, Any]:

@@ -305,9 +305,11 @@ def _problems(given: Rockfall) -> Iterable[tuple[tuple[str | int, ...], str]]:
         ("ground", [zone.name for zone in given.ground.zones]),
     ):
         for number, name in enumerate(names):
-            keys = (what, number, "name") if what == "barriers" else (what, "zones", number, "name")
+            at: tuple[str | int, ...] = (
+                (what, number, "name") if what == "barriers" else (what, "zones", number, "name")
+            )
             if file_name(name) in [file_name(other) for other in names[:number]]:
-                yield keys, f"the name '{name}' is used twice; choose another"
+                yield at, f"the name '{name}' is used twice; choose another"
     for number, barrier in enumerate(given.barriers):
         if np.ptp(np.array(barrier.line), axis=0).max() == 0:
             yield ("barriers", number, "line"), "has no length"

@@ -93,4 +93,5 @@ def _area(ring: Floats) -> float:
 def _inside(triangle: Floats, points: Floats) -> NDArray[np.bool_]:
     sides = np.roll(triangle, -1, axis=0) - triangle
     to = points[:, None] - triangle
-    return (sides[:, 0] * to[..., 1] - sides[:, 1] * to[..., 0] >= 0).all(axis=1)
+    left = sides[:, 0] * to[..., 1] - sides[:, 1] * to[..., 0] >= 0
+    return np.all(left, axis=1)
