@@ -15,6 +15,8 @@ from cdem.errors import BackendError, CdemError
 
 if TYPE_CHECKING:
     from cdem.rockfall.result import Result
+    from cdem.rockfall.rockfall import Rockfall
+    from cdem.rockfall.run import Runs
 
 
 def rockfall(
@@ -47,37 +49,18 @@ def rockfall(
         raise typer.BadParameter("--quiet and --json exclude one another")
     from cdem.rockfall.result import Result
     from cdem.rockfall.rockfall import Rockfall
-    from cdem.rockfall.run import OWN, run_rockfall
-    from cdem.run.progress import line
-    from cdem.study.sweep import describe
 
     given = Rockfall.load(rockfall_file, settings or ())
     folder = output or Path(f"{rockfall_file.stem}.rockfall")
-    if overwrite and (folder / OWN).is_file() and not (folder / "runs").is_symlink():
-        shutil.rmtree(folder / "runs", ignore_errors=True)
-    tty = sys.stderr.isatty()
-    with (
-        stop_on_signal("stopping, finished runs are kept") as stop,
-        line(silent=quiet or (as_json and not tty), tty=tty) as show,
-    ):
-        runs = run_rockfall(
-            given,
-            folder,
-            workers=workers,
-            scheduler=scheduler,
-            progress=None
-            if show is None
-            else lambda p: show(str(p.finished == p.total), *describe(p)),
-            should_stop=lambda: bool(stop),
-        )
+    if overwrite:
+        _drop_runs(folder)
+    runs = _execute(given, folder, workers, scheduler, silent=quiet, as_json=as_json)
     result = Result(runs)
     paths = _write(result, folder)
     if as_json:
         print(json.dumps(json.loads((folder / "result.json").read_text()), indent=2))
     elif not quiet:
-        for note in given.site.projection.notes:
-            print(note)
-        print(result.text())
+        print(*given.site.projection.notes, result.text(), sep="\n")
         print_paths(paths)
     for said in result.doubts:
         print(f"warning: {said}", file=sys.stderr)
@@ -88,6 +71,44 @@ def rockfall(
         raise typer.Exit(STOPPED)
     if runs.failed:
         raise typer.Exit(3)
+
+
+def _drop_runs(folder: Path) -> None:
+    """Remove the runs of an earlier rockfall; all else is written again."""
+    from cdem.rockfall.run import OWN
+
+    if (folder / OWN).is_file() and not (folder / "runs").is_symlink():
+        shutil.rmtree(folder / "runs", ignore_errors=True)
+
+
+def _execute(
+    given: Rockfall,
+    folder: Path,
+    workers: int | None,
+    scheduler: str | None,
+    *,
+    silent: bool,
+    as_json: bool,
+) -> Runs:
+    """Execute the runs that are left, with a line of progress."""
+    from cdem.rockfall.run import run_rockfall
+    from cdem.run.progress import line
+    from cdem.study.sweep import SweepProgress, describe
+
+    tty = sys.stderr.isatty()
+    with (
+        stop_on_signal("stopping, finished runs are kept") as stop,
+        line(silent=silent or (as_json and not tty), tty=tty) as show,
+    ):
+
+        def tell(p: SweepProgress) -> None:
+            if show is not None:
+                show(str(p.finished == p.total), *describe(p))
+
+        return run_rockfall(
+            given, folder, workers=workers, scheduler=scheduler, progress=tell,
+            should_stop=lambda: bool(stop),
+        )  # fmt: skip
 
 
 def _write(result: Result, folder: Path) -> list[Path]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +13,7 @@ from pydantic import PrivateAttr, ValidationError
 
 from cdem.case.explain import explain
 from cdem.case.reader import load_case_data, plain
-from cdem.case.source import Source
+from cdem.case.source import Keys, Source
 from cdem.errors import CaseError
 from cdem.model.slips import DEEP
 from cdem.rockfall.blocks import Wish
@@ -37,6 +37,7 @@ SAMPLES = 4.0
 """Samples while the fastest possible block crosses a cell of the maps."""
 LONGEST_SAMPLE = 0.02
 """Longest time between two samples [s]."""
+KINDS_OF_STARTS = ("Point", "LineString", "Polygon")
 FARTHEST = 1e9
 """Extent of a terrain that is used whole [m]."""
 
@@ -214,21 +215,11 @@ class Rockfall(RockfallParts):
     def _starts_of_file(self, path: Path) -> Starts:
         starts = self.starts
         features = read_features(path, starts.layer, starts.where)
-        parts: dict[str, list[Floats]] = {"Point": [], "LineString": [], "Polygon": []}
         bring = self.site.bring(path, starts.crs)
+        parts: dict[str, list[Floats]] = {kind: [] for kind in KINDS_OF_STARTS}
         for geometry, _ in features.items:
-            kind, data = str(geometry.get("type")), geometry.get("coordinates", [])
-            single = kind.removeprefix("Multi")
-            if single not in parts:
-                continue
-            for part in data if kind.startswith("Multi") else [data]:
-                ring = part[0] if single == "Polygon" and part else part
-                try:
-                    points = np.array([ring] if single == "Point" else ring, float)[:, :2]
-                    assert points.shape[1] == 2 and np.isfinite(points).all()
-                except (TypeError, ValueError, IndexError, AssertionError):
-                    raise CaseError(f"{path}: its {kind} is not made of points [x, y]") from None
-                parts[single].append(bring(features.label, points))
+            for kind, points in _points_of(path, geometry):
+                parts[kind].append(bring(features.label, points))
         given = [kind for kind, found in parts.items() if found]
         if len(given) != 1:
             raise CaseError(
@@ -282,11 +273,44 @@ class Rockfall(RockfallParts):
         return {key: json.loads(self.model_dump_json())[key] for key in keys}
 
 
-def _problems(given: Rockfall) -> Iterable[tuple[tuple[str | int, ...], str]]:
+def _points_of(path: Path, geometry: dict[str, Any]) -> Iterator[tuple[str, Floats]]:
+    """Kind and points of the parts of a geometry; of areas the outer rings."""
+    kind, data = str(geometry.get("type")), geometry.get("coordinates", [])
+    single = kind.removeprefix("Multi")
+    if single not in KINDS_OF_STARTS:
+        return
+    for part in data if kind.startswith("Multi") else [data]:
+        ring = part[0] if single == "Polygon" and part else part
+        try:
+            points = np.array([ring] if single == "Point" else ring, float)[:, :2]
+        except (TypeError, ValueError, IndexError):
+            points = np.zeros((0, 0))
+        if points.shape[1] != 2 or not np.isfinite(points).all():
+            raise CaseError(f"{path}: its {kind} is not made of points [x, y]")
+        yield single, points
+
+
+def _problems(given: Rockfall) -> Iterator[tuple[Keys, str]]:
     """Contradictions between keys."""
     if given.terrain.grid is None:
         yield ("terrain",), "a rockfall needs a grid of heights: terrain: {grid: dem.tif}"
-    drawn = {
+    yield from _wrong_values(given)
+    barriers = [barrier.name for barrier in given.barriers]
+    zones = [zone.name for zone in given.ground.zones]
+    for place, names in ((("barriers",), barriers), (("ground", "zones"), zones)):
+        for number, name in enumerate(names):
+            if file_name(name) in map(file_name, names[:number]):
+                yield (*place, number, "name"), f"the name '{name}' is used twice; choose another"
+    for number, barrier in enumerate(given.barriers):
+        if np.ptp(np.array(barrier.line), axis=0).max() == 0:
+            yield ("barriers", number, "line"), "has no length"
+    if isinstance(given.blocks.contact_modulus, str) and given.blocks.contact_modulus != "auto":
+        yield ("blocks", "contact_modulus"), "must be auto or a number [Pa]"
+
+
+def _wrong_values(given: Rockfall) -> Iterator[tuple[Keys, str]]:
+    """Units and ranges of what is drawn."""
+    drawn: dict[Keys, tuple[Drawn, str, float]] = {
         ("blocks", "volume"): (given.blocks.volume, "m3", 0.0),
         ("starts", "height"): (given.starts.height, "m", -1e-300),
         ("starts", "velocity"): (given.starts.velocity, "m/s", -1e-300),
@@ -300,21 +324,6 @@ def _problems(given: Rockfall) -> Iterable[tuple[tuple[str | int, ...], str]]:
         if _least(value, unit) <= limit:
             word = "above 0" if limit == 0 else "at least 0"
             yield keys, f"must be {word}; give low: a limit of the distribution"
-    for what, names in (
-        ("barriers", [barrier.name for barrier in given.barriers]),
-        ("ground", [zone.name for zone in given.ground.zones]),
-    ):
-        for number, name in enumerate(names):
-            at: tuple[str | int, ...] = (
-                (what, number, "name") if what == "barriers" else (what, "zones", number, "name")
-            )
-            if file_name(name) in [file_name(other) for other in names[:number]]:
-                yield at, f"the name '{name}' is used twice; choose another"
-    for number, barrier in enumerate(given.barriers):
-        if np.ptp(np.array(barrier.line), axis=0).max() == 0:
-            yield ("barriers", number, "line"), "has no length"
-    if isinstance(given.blocks.contact_modulus, str) and given.blocks.contact_modulus != "auto":
-        yield ("blocks", "contact_modulus"), "must be auto or a number [Pa]"
 
 
 def file_name(name: str) -> str:
