@@ -28,7 +28,7 @@ def test_help_says_force_only_where_a_case_has_changed():
     }
     assert [name for name in words if "--force" in words[name]] == ["run"]
     replacing = {name for name in words if "--overwrite" in words[name]}
-    assert replacing == {"new", "site", "joints", "law new", "run"}
+    assert replacing == {"new", "site", "joints", "rockfall", "law new", "run"}
 
 
 @pytest.mark.parametrize(
