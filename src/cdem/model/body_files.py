@@ -17,6 +17,7 @@ from cdem.joints.convex_cells import from_polyhedron, join
 from cdem.mesh.arrays import components
 from cdem.mesh.mesh import Mesh, merge
 from cdem.mesh.mesh_files import MEND, read_raw
+from cdem.mesh.obj_file import NO_SHAPE, read_obj, within
 from cdem.mesh.primitives import outward_faces, snapped
 from cdem.model import vtk_cells
 from cdem.units import coordinates
@@ -36,8 +37,6 @@ CROSSES = (
 )
 SHOWN = 4
 """Most open edges in an error."""
-NO_SHAPE = ("vt", "vn", "s", "usemtl", "mtllib")
-"""Words of an OBJ file for the looks of its faces; the files that they name are not opened."""
 ROUNDED = 1e-6
 """Coordinates in files are rounded to about this fraction of the largest: STL keeps seven digits."""
 
@@ -250,31 +249,10 @@ def _own(name: str, points: Floats, loops: Loops, kind: str = "") -> Body:
 
 
 def _obj(path: Path, unused: list[str]) -> Iterator[Body]:
-    points, loops, parts, part = [], [], [], ""
-    others: Counter[str] = Counter()
-    text = path.read_text(encoding="utf-8", errors="replace")
-    for number, line in enumerate(text.splitlines(), start=1):
-        words = line.split()
-        try:
-            if words[:1] == ["v"]:
-                x, y, z = map(float, words[1:4])
-                points.append([x, y, z])
-            elif words[:1] in (["o"], ["g"]):
-                part = " ".join(words[1:])
-            elif words[:1] == ["f"]:
-                parts.append(part)
-                corners = [int(word.split("/")[0]) for word in words[1:]]
-                loops.append([c - 1 if c > 0 else len(points) + c for c in corners])
-            elif words and words[0] not in NO_SHAPE and not line.startswith("#"):
-                others[words[0]] += 1
-        except ValueError:
-            raise MeshError(f"{path}:{number}: cannot be read: {line.strip()}") from None
-        if words[:1] == ["f"] and not _within(loops[-1], len(points)):
-            raise MeshError(f"{path}:{number}: a face needs three or more vertices from above it")
-    if not loops:
-        raise MeshError(f"{path}: contains no faces")
-    _tell_unused(path, others, unused)
-    yield from _surfaces(np.array(points), loops, parts)
+    found = read_obj(path)
+    shapes = {kind: count for kind, count in found.others.items() if kind not in NO_SHAPE}
+    _tell_unused(path, Counter(shapes), unused)
+    yield from _surfaces(found.points, found.loops, found.parts)
 
 
 def _tell_unused(path: Path, others: Counter[str], unused: list[str]) -> None:
@@ -282,10 +260,6 @@ def _tell_unused(path: Path, others: Counter[str], unused: list[str]) -> None:
         kinds = ", ".join(f"{count} of '{kind}'" for kind, count in others.most_common(SHOWN))
         more = f" and {len(others) - SHOWN} kinds more" if len(others) > SHOWN else ""
         unused.append(f"{path.name}: only faces are used; {kinds}{more} ignored")
-
-
-def _within(loop: list[int], count: int) -> bool:
-    return len(loop) >= 3 and min(loop) >= 0 and max(loop) < count
 
 
 def _by_meshio(path: Path, unused: list[str]) -> Iterator[Body]:
@@ -299,7 +273,7 @@ def _by_meshio(path: Path, unused: list[str]) -> Iterator[Body]:
             others[block.type] += len(block.data)
     if not loops:
         raise MeshError(f"{path}: contains no readable faces; is the file complete?")
-    if not all(_within(loop, len(raw.points)) for loop in loops):
+    if not all(within(loop, len(raw.points)) for loop in loops):
         raise MeshError(f"{path}: a face refers to a missing vertex")
     _tell_unused(path, others, unused)
     yield from _surfaces(np.asarray(raw.points, float), loops)

@@ -1,4 +1,4 @@
-"""From terrain to a mesh: contours or grids, a sliding surface, bodies outlined in plan.
+"""From terrain to a mesh: ground, a sliding surface with bodies outlined in plan, or layers.
 
 Example:
     >>> from cdem.terrain import Landslide, make_mesh, write
@@ -37,17 +37,19 @@ __all__ = ["Landslide", "Solid", "make_mesh", "measure", "text", "write"]
 
 
 def make_mesh(landslide: Landslide) -> Solid:
-    """Mesh a landslide: bodies and bedrock, conforming, coarser away from the bodies.
+    """Mesh a landslide: bodies or layers, and bedrock, conforming, coarser away from them.
 
     Raises:
         CaseError: Terrain, surface and outlines do not fit together.
         MeshError: The space cannot be filled with tets.
         BackendError: The extra `terrain` is not installed.
     """
+    from cdem.terrain.layers import make_layers
     from cdem.terrain.plan import make_plan
     from cdem.terrain.solid import make_solid
 
-    return make_solid(landslide, make_plan(landslide))
+    make = make_layers if landslide.layers else make_solid
+    return make(landslide, make_plan(landslide))
 
 
 def __getattr__(name: str) -> Any:

@@ -1,4 +1,4 @@
-"""The landslide file: terrain, sliding surface and bodies, checked like a case, for `cdem mesh`."""
+"""The landslide file: terrain, with bodies or layers, checked like a case, for `cdem mesh`."""
 
 from __future__ import annotations
 
@@ -16,8 +16,9 @@ from cdem.case.reader import load_case_data, plain
 from cdem.case.source import Source
 from cdem.errors import CaseError
 from cdem.terrain import files, surfaces
+from cdem.terrain.facet_files import read_facets
 from cdem.terrain.features import read_features
-from cdem.terrain.heights import Grid, Heights, Lines, Plane, Smooth
+from cdem.terrain.heights import Grid, Heights, Lines, Plane, Smooth, refuse_degrees
 from cdem.terrain.projection import Projection, horizontal, name_of, short_name, utm_zone
 from cdem.terrain.rasters import Box, read_raster
 from cdem.terrain.resample import (
@@ -27,13 +28,21 @@ from cdem.terrain.resample import (
     metres_of_heights,
     read_heights,
 )
-from cdem.terrain.schema import HeightsBy, LandslideParts, OutlineFile, PlaneBy, PlaneThrough
+from cdem.terrain.schema import (
+    HeightsBy,
+    LandslideParts,
+    OutlineFile,
+    PlaneBy,
+    PlaneThrough,
+    Shape,
+)
+from cdem.terrain.triangles import Triangles
 
 Floats = NDArray[np.float64]
 
 
 class Landslide(LandslideParts):
-    """The input of `cdem mesh`: terrain, sliding surface, bodies, sizes.
+    """The input of `cdem mesh`: terrain, sliding surface and bodies, or layers; sizes.
 
     Raises:
         CaseError: Every problem found, one line each: file:line:column: path: problem.
@@ -49,13 +58,13 @@ class Landslide(LandslideParts):
         except ValidationError as error:
             raise explain(error, source, Landslide) from None
         self._source = source
-        names = [self.bedrock, *(body.group for body in self.bodies)]
-        for index, body in enumerate(self.bodies):
-            if body.group in names[: index + 1]:
-                raise self.error(
-                    f"bodies.{index}.group",
-                    f"the name '{body.group}' is used twice; choose another",
-                )
+        parts = [(f"bodies.{i}.group", body.group) for i, body in enumerate(self.bodies)]
+        parts += [(f"layers.{i}.group", layer.group) for i, layer in enumerate(self.layers)]
+        names = [self.bedrock]
+        for key, name in parts:
+            if name in names:
+                raise self.error(key, f"the name '{name}' is used twice; choose another")
+            names.append(name)
 
     @classmethod
     def load(cls, path: str | Path, overrides: Iterable[str] = ()) -> Landslide:
@@ -100,19 +109,24 @@ class Landslide(LandslideParts):
     def sliding_surface(self) -> Heights | None:
         """The sliding surface of the bodies; None if it follows from ground and outlines."""
         by = self.surface
-        if by is None or by.slbl is not None:
-            return None
+        return None if by is None or by.slbl is not None else self._shape("surface", by)
+
+    def base_of(self, index: int) -> Heights:
+        """The lower surface of a layer."""
+        return self._shape(f"layers.{index}.base", self.layers[index].base)
+
+    def _shape(self, key: str, by: Shape) -> Heights:
         if by.ellipsoid is not None:
             e = by.ellipsoid
             return surfaces.Ellipsoid(np.array(e.centre), np.array(e.axes), e.azimuth, e.tilt)
         if by.planes is not None:
-            with self._source.blame("surface.planes"):
+            with self._source.blame(f"{key}.planes"):
                 return surfaces.Highest([self._plane(plane) for plane in by.planes])
         if by.points is not None:
-            with self._source.blame("surface.points"):
+            with self._source.blame(f"{key}.points"):
                 path = self._source.folder / by.points
                 return surfaces.through_points(path, by.columns, self.bring(path, by.crs))
-        return self._heights("surface", by)
+        return self._heights(key, by)
 
     def planes(self, planes: Iterable[PlaneBy]) -> list[Plane]:
         """Planes of given dips."""
@@ -200,6 +214,8 @@ class Landslide(LandslideParts):
                 return self._plane(given.plane)  # type: ignore[attr-defined]
             if given.grid is not None:
                 return self._grid(key, given)
+            if given.triangles is not None:
+                return self._triangles(self._source.folder / given.triangles, given)
             if given.contours is not None:
                 path = self._source.folder / given.contours
                 bring = self.bring(path, given.crs, given.unit)
@@ -207,6 +223,21 @@ class Landslide(LandslideParts):
             else:
                 lines = [np.array(line) for line in given.lines or []]
             return Lines(lines, self.sizes.body / 4)
+
+    def _triangles(self, path: Path, given: HeightsBy) -> Triangles:
+        found = read_facets(path, given.layer)
+        self.projection.tell(*found.notes)
+        points = self.projection.bring(path, None, given.crs, found.points)
+        points = points * [
+            1.0, 1.0, metres_of_heights(path, given.crs, found.unit, given.unit, self.projection)
+        ]  # fmt: skip
+        refuse_degrees(path, points)
+        try:
+            surface = Triangles(points, found.triangles, found.rounding)
+        except CaseError as error:
+            raise CaseError(f"{path}: {error}") from None
+        self.projection.tell(*(f"{path.name}: {note}" for note in surface.notes))
+        return surface
 
     def _grid(self, key: str, given: HeightsBy) -> Grid:
         x, y = self.extent.x, self.extent.y

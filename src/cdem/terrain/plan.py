@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from cdem.errors import MeshError
+from cdem.errors import CaseError, MeshError
 from cdem.terrain.heights import Heights, extra
 from cdem.terrain.landslide import Landslide
 from cdem.terrain.slbl import Membrane, OnTriangles, base_level
@@ -65,10 +65,10 @@ def make_plan(landslide: Landslide) -> Plan:
     if surface is None and bodies:
         surface, outcrop = _base_level(landslide, plan, ground)
     if surface is None:
-        plan.ground = _known(landslide, "terrain", ground, plan.points)
+        plan.ground = known(landslide, "terrain", ground, plan.points)
     else:
         _lift(landslide, plan, ground, surface, outcrop)
-    _check_base(landslide, plan)
+    check_base(landslide, plan.points, np.fmin(plan.ground, plan.bed))
     plan.notes = projection.notes + plan.notes
     return plan
 
@@ -77,7 +77,7 @@ def _base_level(landslide: Landslide, plan: Plan, ground: Heights) -> tuple[Heig
     """The sloping local base level under the bodies, and its points at ground level."""
     used, local = np.unique(plan.triangles[plan.body >= 0], return_inverse=True)
     points, triangles = plan.points[used], local.reshape(-1, 3)
-    z = _known(landslide, "terrain", ground, points)
+    z = known(landslide, "terrain", ground, points)
     around = np.zeros(len(plan.points), bool)
     around[plan.triangles[plan.body < 0]] = True
     thin = THIN * landslide.sizes.body
@@ -86,15 +86,26 @@ def _base_level(landslide: Landslide, plan: Plan, ground: Heights) -> tuple[Heig
     return OnTriangles(points, triangles, bed), used[bed == z]
 
 
-def _check_base(landslide: Landslide, plan: Plan) -> None:
-    lowest = np.fmin(plan.ground, plan.bed)
+def check_base(
+    landslide: Landslide, points: Floats, lowest: Floats, what: str = "the sliding surface"
+) -> None:
+    """Check that the base lies below everything else.
+
+    Args:
+        landslide: With the height of the base.
+        points: Positions in plan [m], shape (points, 2).
+        lowest: Height of the lowest surface there [m].
+        what: Its name, beside that of the ground.
+
+    Raises:
+        CaseError: It does not, by an element.
+    """
     at = int(lowest.argmin())
     if lowest[at] < landslide.extent.base + landslide.sizes.body:
         raise landslide.error(
             "extent.base",
-            f"must lie at least an element below the ground and the sliding surface, whose lowest "
-            f"point is "
-            f"{lowest[at]:.5g} m at {_at(plan.points[at])}",
+            f"must lie at least an element below the ground and {what}, whose lowest point is "
+            f"{lowest[at]:.5g} m at {_at(points[at])}",
         )
 
 
@@ -102,9 +113,22 @@ def _at(point: Floats) -> str:
     return f"({coordinates(point)})"
 
 
-def _known(landslide: Landslide, key: str, heights: Heights, points: Floats) -> Floats:
-    """Heights at points, which must lie within the data."""
-    z = heights(points)
+def known(landslide: Landslide, key: str, heights: Heights, points: Floats) -> Floats:
+    """Heights at points, which must lie within the data.
+
+    Args:
+        landslide: For its errors and sizes.
+        key: Place of the heights in its file.
+        heights: The heights.
+        points: Positions [m], shape (points, 2).
+
+    Raises:
+        CaseError: There are no data at a point.
+    """
+    try:
+        z = heights(points)
+    except CaseError as error:  # two heights at one place
+        raise landslide.error(key, str(error)) from None
     reach = landslide.sizes.body * 1e-6
     outside = np.any((points < heights.low - reach) | (points > heights.high + reach), axis=1)
     bad = np.flatnonzero(outside | ~np.isfinite(z))
@@ -209,8 +233,8 @@ def _above(landslide: Landslide, outline: Any, ground: Heights, surface: Heights
     y = np.arange(south - step, north + 2 * step, step)
     xy = np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2)
     inside = shapely.contains_xy(outline, xy)
-    z = _known(landslide, "terrain", ground, xy[inside])
-    bed = _known(landslide, "surface", surface, xy[inside])
+    z = known(landslide, "terrain", ground, xy[inside])
+    bed = known(landslide, "surface", surface, xy[inside])
     thickness = np.zeros(len(xy))
     thickness[inside] = z - bed
     # just outside the outline the sources may lack data: they are extrapolated, or stay at zero
@@ -409,9 +433,9 @@ def _lift(
 
 def _look_up(landslide: Landslide, plan: Plan, ground: Heights, surface: Heights) -> None:
     of_body = np.unique(plan.triangles[plan.body >= 0])
-    plan.ground = _known(landslide, "terrain", ground, plan.points)
+    plan.ground = known(landslide, "terrain", ground, plan.points)
     plan.bed = np.full(len(plan.points), np.nan)
-    plan.bed[of_body] = _known(landslide, "surface", surface, plan.points[of_body])
+    plan.bed[of_body] = known(landslide, "surface", surface, plan.points[of_body])
 
 
 def split_pinched(plan: Plan, zero: NDArray[np.bool_]) -> None:

@@ -36,7 +36,8 @@ def measure(solid: Solid) -> dict[str, Any]:
         "points": len(solid.points),
         "tets": len(solid.tets),
         "groups": groups,
-        "bed": _bed(solid) if len(solid.groups) > 1 else None,
+        "bed": _bed(solid) if any(n.startswith("bed_") for n in solid.surfaces) else None,
+        "layers": solid.layers,
         "smallest_height": float(height.min()),
         "smallest_height_ratio": float(ratio.min()),
         "smallest_dihedral_angle": float(angle.min()),
@@ -80,6 +81,13 @@ def text(facts: dict[str, Any]) -> str:
         lines.append(
             f"bed: dip {bed['dip']:.3f} deg towards {bed['dip_direction']:.3f} deg, "
             f"within {bed['farthest']:.2g} m of that plane"
+        )
+    if facts["layers"]:
+        lines.append("thickness of layers where they are present, and their share of the plan:")
+    for name, layer in facts["layers"].items():
+        lines.append(
+            f"  {name:<{width}}  {layer['least']:.3g} to {layer['most']:.3g} m, mean "
+            f"{layer['mean']:.3g} m, {layer['share']:.1%}"
         )
     lines += [
         f"worst tets: height {facts['smallest_height']:.3g} m, height / longest edge "

@@ -14,8 +14,9 @@ Size = Annotated[float, Quantity("m", above=0)]
 Point2 = Annotated[list[Length], Field(min_length=2, max_length=2), Listed]
 Span = Annotated[list[Length], Field(min_length=2, max_length=2)]
 Dip = Annotated[float, Quantity("deg", at_least=0, below=90)]
-GROUND = ("contours", "grid", "lines", "plane")
-SURFACE = (*GROUND, "planes", "ellipsoid", "points", "slbl")
+GROUND = ("contours", "grid", "triangles", "lines", "plane")
+SHAPE = (*GROUND, "planes", "ellipsoid", "points")
+SURFACE = (*SHAPE, "slbl")
 
 
 class PlaneBy(Part):
@@ -74,7 +75,7 @@ class SlblBy(Part):
 
 
 class HeightsBy(Part):
-    """Heights from one of: contours, grid, lines, plane."""
+    """Heights from one of: contours, grid, triangles, lines, plane."""
 
     contours: Name | None = Field(
         None, description="Contour lines: .geojson, .shp, .gpkg, .kml, .dxf or .csv"
@@ -82,6 +83,12 @@ class HeightsBy(Part):
     grid: Name | None = Field(
         None,
         description="Grid: GeoTIFF, VRT, ESRI ASCII, Surfer; or a point cloud (.las, .laz) and cell",
+    )
+    triangles: Name | None = Field(
+        None, description="Surface of triangles: .obj, .stl, .ply, .ts (GOCAD) or .dxf (3DFACE)"
+    )
+    layer: Name | None = Field(
+        None, description="Layer of a DXF file of triangles; needed if several have faces"
     )
     lines: list[Annotated[list[Length3], Field(min_length=2)]] | None = Field(
         None, min_length=1, description="Polylines of points [x, y, z] [m]"
@@ -106,8 +113,8 @@ class HeightsBy(Part):
     )
     unit: Literal["m", "ft", "us-ft", "cm", "dm"] | None = Field(
         None,
-        description="Unit of the heights of a grid or contours; default: as in the file, else "
-        "metres",
+        description="Unit of the heights of a grid, contours or triangles; default: as in the "
+        "file, else metres",
     )
     nodata: list[float] = Field([], description="Further values of a grid for missing data")
     classes: Literal["ground", "all"] = Field(
@@ -126,6 +133,8 @@ def _one_source(part: HeightsBy, sources: tuple[str, ...]) -> None:
             f"needs exactly one of {', '.join(sources)}; "
             + (f"got {' and '.join(given)}" if given else "got none")
         )
+    if part.layer is not None and part.triangles is None:
+        raise ValueError("layer goes with triangles; leave it out")
 
 
 class Terrain(HeightsBy):
@@ -150,8 +159,8 @@ AnyPlane = Annotated[
 ]
 
 
-class Surface(HeightsBy):
-    """The sliding surface."""
+class Shape(HeightsBy):
+    """A surface in the rock."""
 
     plane: AnyPlane | None = Field(None, description="A plane, by its dip or through lines")
     planes: list[AnyPlane] | None = Field(
@@ -166,12 +175,36 @@ class Surface(HeightsBy):
     columns: dict[Name, Name] = Field(
         {}, description="Names of columns of the points, e.g. {dip: inclination}"
     )
+
+
+class Surface(Shape):
+    """The sliding surface."""
+
     slbl: SlblBy | None = Field(None, description="Sloping local base level")
 
     @model_validator(mode="after")
     def _has_a_source(self) -> Surface:
         _one_source(self, SURFACE)
         return self
+
+
+class LayerBase(Shape):
+    """The lower surface of a layer."""
+
+    @model_validator(mode="after")
+    def _has_a_source(self) -> LayerBase:
+        _one_source(self, SHAPE)
+        return self
+
+
+class Layer(Part):
+    """Rock between a surface and the one above it."""
+
+    group: Name = Field(description="Group of its elements")
+    base: LayerBase = Field(
+        description="Its lower surface; where it lies above the ground or the base of the layer "
+        "above, the layer is absent"
+    )
 
 
 class Extent(Part):
@@ -222,8 +255,10 @@ class Body(Part):
 class Sizes(Part):
     """Edge lengths of the elements."""
 
-    body: Size = Field(description="In the bodies; for bare ground at its surface [m]")
-    far: Size = Field(description="Largest, far from the bodies [m]")
+    body: Size = Field(
+        description="In the bodies and layers; for bare ground at its surface [m]"
+    )
+    far: Size = Field(description="Largest, far from the bodies; height of those below layers [m]")
     growth: Annotated[float, Quantity("1", above=0, at_most=1)] = Field(
         0.3, description="Growth of the edge length per distance from the bodies [1]"
     )
@@ -249,11 +284,20 @@ class LandslideParts(Part):
     bodies: list[Body] = Field(
         [], description="Bodies; the first one counts where they overlap; none for bare ground"
     )
-    bedrock: Name = Field("bedrock", description="Group of everything below and around the bodies")
+    layers: list[Layer] = Field(
+        [], description="Layers from the ground downwards, above the bedrock; in place of bodies"
+    )
+    bedrock: Name = Field(
+        "bedrock", description="Group of everything below and around the bodies or layers"
+    )
     sizes: Sizes = Field(description="Edge lengths of the elements")
 
     @model_validator(mode="after")
     def _bodies_have_a_surface(self) -> LandslideParts:
+        if self.layers and (self.bodies or self.surface is not None):
+            raise ValueError(
+                "layers do not go together with bodies and a sliding surface; leave out one of them"
+            )
         if bool(self.bodies) != (self.surface is not None):
             raise ValueError(
                 "bodies need a sliding surface; give surface"

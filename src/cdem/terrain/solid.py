@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import combinations
 
 import numpy as np
@@ -28,10 +28,12 @@ class Solid:
         points: Positions [m], shape (points, 3).
         tets: Point ids of positive volume, shape (tets, 4).
         tet_group: Number of each tet's group in `groups`.
-        groups: The bedrock, then the bodies.
+        groups: The bedrock, then the bodies or layers.
         surfaces: By name, point ids of triangles, shape (faces, 3).
         notes: Messages for the user.
         crs: Projection of the points as text for a case; None if no file names one.
+        layers: By group, `least`, `mean` and `most` thickness of a layer where it is present [m], and
+            the `share` of the plan that it covers [1].
     """
 
     points: Floats
@@ -41,6 +43,7 @@ class Solid:
     surfaces: dict[str, Ints]
     notes: list[str]
     crs: str | None
+    layers: dict[str, dict[str, float]] = field(default_factory=dict)
 
 
 class Columns:
@@ -50,9 +53,10 @@ class Columns:
         self.ids: dict[int, list[int]] = {}
         self.parts: dict[int, list[float]] = {}
 
-    def add(self, at: int, ids: list[int]) -> None:
+    def add(self, at: int, ids: list[int], parts: list[float] | None = None) -> None:
+        """Add a column: its points from low to high, and their fractions; equal parts without."""
         self.ids[at] = ids
-        self.parts[at] = [k / max(1, len(ids) - 1) for k in range(len(ids))]
+        self.parts[at] = parts or [k / max(1, len(ids) - 1) for k in range(len(ids))]
 
     def climb(self, feet: list[int]) -> list[tuple[list[int], int, int]]:
         """From the bottom of some columns to their top, one point at a time.
@@ -111,7 +115,7 @@ def make_solid(landslide: Landslide, plan: Plan) -> Solid:
         landslide.system,
     )
     _name_surfaces(solid, plan, columns)
-    _check_conforming(solid, np.concatenate([plan.triangles, base, *sides.values()]))
+    check_conforming(solid, np.concatenate([plan.triangles, base, *sides.values()]))
     return solid
 
 
@@ -175,16 +179,26 @@ def _outside(
         points.append(np.column_stack([np.tile(xy[k], (parts - 1, 1)), z]))
         columns.add(k, [int(on_base[k]), *range(count, count + parts - 1), at])
         count += parts - 1
-    low, high = xy.min(axis=0), xy.max(axis=0)
     sides: dict[str, list[list[int]]] = {"S": [], "E": [], "N": [], "W": []}
-    on = {"S": xy[:, 1] == low[1], "E": xy[:, 0] == high[0]}
-    on |= {"N": xy[:, 1] == high[1], "W": xy[:, 0] == low[0]}
-    for k in range(len(rim)):
-        after = (k + 1) % len(rim)
-        name = next(n for n, there in on.items() if there[k] and there[after])
-        for stand, _, to in columns.climb([k, after]):
+    for k, name in enumerate(sides_of(xy)):
+        for stand, _, to in columns.climb([k, (k + 1) % len(rim)]):
             sides[name].append([*stand, to])
     return {name: np.array(faces) for name, faces in sides.items()}, base
+
+
+def sides_of(rim: Floats) -> list[str]:
+    """Side (S, E, N, W) of each edge of the rim, from a point to the next one.
+
+    Args:
+        rim: Its points in order [m], shape (points, 2).
+    """
+    low, high = rim.min(axis=0), rim.max(axis=0)
+    on = {"S": rim[:, 1] == low[1], "E": rim[:, 0] == high[0]}
+    on |= {"N": rim[:, 1] == high[1], "W": rim[:, 0] == low[0]}
+    return [
+        next(name for name, there in on.items() if there[k] and there[(k + 1) % len(rim)])
+        for k in range(len(rim))
+    ]
 
 
 def _base(landslide: Landslide, rim: Floats) -> tuple[Floats, Ints]:
@@ -235,8 +249,16 @@ def shape(corners: Floats) -> tuple[Floats, Floats, Floats]:
     return height, height / longest, np.degrees(np.arccos(np.clip(cosine, -1, 1)))
 
 
-def _check_conforming(solid: Solid, outside: Ints) -> None:
-    """Check that bodies and bedrock share every face between them, and that the outside is unchanged."""
+def check_conforming(solid: Solid, outside: Ints) -> None:
+    """Check that all parts share every face between them, and that the outside is unchanged.
+
+    Args:
+        solid: The mesh.
+        outside: All triangles of its surface, shape (triangles, 3).
+
+    Raises:
+        MeshError: They do not, or a tet has no volume.
+    """
     skin = np.sort(_skin(solid.tets), axis=1)
     wanted = np.sort(outside, axis=1)
     same = (
