@@ -121,7 +121,7 @@ def _facts(landslide: Landslide, plan: Plan, z: Floats) -> dict[str, dict[str, f
     area, facts = _areas(plan), {}
     for layer, above, below in zip(landslide.layers, z[:-2], z[1:-1], strict=True):
         thickness = above - below
-        covered = float(area[(thickness > 0)[plan.triangles].any(axis=1)].sum())
+        covered = _volume(plan, area, (thickness > 0).astype(float))  # a third for each corner
         facts[layer.group] = {
             "least": float(thickness[thickness > 0].min()),
             "mean": _volume(plan, area, thickness) / covered,

@@ -136,7 +136,9 @@ def known(landslide: Landslide, key: str, heights: Heights, points: Floats) -> F
         raise landslide.error(
             key,
             f"has no data at {_at(points[bad[0]])}; it reaches from {_at(heights.low)} to "
-            f"{_at(heights.high)}" + (" with gaps" if not outside[bad[0]] else ""),
+            f"{_at(heights.high)}"
+            + (" with gaps" if not outside[bad[0]] else "")
+            + "; make the extent smaller, or give data that reach further",
         )
     return z
 

@@ -144,6 +144,8 @@ class Triangles:
 
     def _pairs(self, xy: Floats) -> Iterator[_Pairs]:
         """Each point with all triangles of its cell."""
+        if not len(xy):
+            return
         at = np.floor((xy - self._origin) / self._cell)
         there = ((at >= 0) & (at < self._shape)).all(axis=1)
         cell = np.zeros(len(xy), np.int64)

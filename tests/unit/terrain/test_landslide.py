@@ -55,7 +55,7 @@ pytest.importorskip("netgen", reason="needs the extra 'terrain'")
         ),
         (
             {"surface": {}},
-            r"surface: needs exactly one of contours, grid, lines, plane, planes, ellipsoid, points, slbl",
+            r"surface: needs exactly one of contours, grid, triangles, lines, plane, planes, ellipsoid, points, slbl",
         ),
         (
             {"bodies": [{"group": "bedrock", "outline": SQUARE}]},
