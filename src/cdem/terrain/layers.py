@@ -46,7 +46,7 @@ def make_layers(landslide: Landslide, plan: Plan) -> Solid:
     z, notes = _heights(landslide, plan)
     points = [np.column_stack([plan.points, plan.ground])]
     horizons = _divided(landslide, plan.points, z, points)
-    groups = [landslide.bedrock, *(layer.group for layer in landslide.layers)]
+    groups = [*(layer.group for layer in landslide.layers), landslide.bedrock]
     tets, group = [], []
     for part, columns in enumerate(horizons.columns):
         stacked = [
@@ -55,8 +55,7 @@ def make_layers(landslide: Landslide, plan: Plan) -> Solid:
             for stand, _, to in columns.climb(triangle)
         ]
         tets.append(np.array(stacked, np.int64).reshape(-1, 4))
-        # the part below the last layer is the bedrock, the first group
-        group.append(np.full(len(stacked), (part + 1) % len(groups)))
+        group.append(np.full(len(stacked), part))
     plan.notes += [n for n in landslide.projection.notes if n not in plan.notes] + notes
     solid = Solid(
         np.concatenate(points),
@@ -193,11 +192,11 @@ def _outside(plan: Plan, horizons: _Horizons) -> dict[str, Ints]:
 def _name_layers(solid: Solid, plan: Plan, horizons: _Horizons) -> None:
     """Name the base of each layer where it is present, and the ground by the group below it."""
     free = np.ones(len(plan.triangles), bool)  # ground of no layer yet
-    for part, name in enumerate(solid.groups[1:]):
+    for part, name in enumerate(solid.groups[:-1]):
         there = (horizons.z[part] > horizons.z[part + 1])[plan.triangles].any(axis=1)
         solid.surfaces[f"base_{name}"] = horizons.ids[part + 1][plan.triangles[there]]
         if (there & free).any():
             solid.surfaces[f"ground_{name}"] = plan.triangles[there & free]
         free &= ~there
     if free.any():
-        solid.surfaces[f"ground_{solid.groups[0]}"] = plan.triangles[free]
+        solid.surfaces[f"ground_{solid.groups[-1]}"] = plan.triangles[free]

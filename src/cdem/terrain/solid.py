@@ -28,7 +28,7 @@ class Solid:
         points: Positions [m], shape (points, 3).
         tets: Point ids of positive volume, shape (tets, 4).
         tet_group: Number of each tet's group in `groups`.
-        groups: The bedrock, then the bodies or layers.
+        groups: The bedrock, then the bodies; or layers from the ground downwards, then the bedrock.
         surfaces: By name, point ids of triangles, shape (faces, 3).
         notes: Messages for the user.
         crs: Projection of the points as text for a case; None if no file names one.
