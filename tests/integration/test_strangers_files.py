@@ -12,6 +12,7 @@ from shared import strangers
 from cdem.errors import CdemError
 from cdem.mesh.mesh_files import read_mesh
 from cdem.outcrop.cloud_files import read_outcrop
+from cdem.terrain.facet_files import read_facets
 from cdem.terrain.features import read_features
 from cdem.terrain.rasters import read_raster
 
@@ -54,6 +55,9 @@ def listener():
         (strangers.write_clouds, read_outcrop, 6, range(6)),
     ],
     ids=["vectors", "all vectors", "more vectors", "rasters", "meshes", "clouds"],
+        (strangers.write_facets, read_facets, 10, range(10)),
+    ],
+    ids=["vectors", "all vectors", "more vectors", "rasters", "meshes", "facets"],
 )
 def test_no_file_leads_elsewhere_or_to_no_end(
     tmp_path, monkeypatch, listener, write, read, count, taken

@@ -279,3 +279,27 @@ def write_meshes(folder: Path, url: str, secret: Path) -> list[Path]:
     for name, text in texts.items():
         (folder / name).write_text(text)
     return [folder / name for name in texts]
+
+
+def write_facets(folder: Path, url: str, secret: Path) -> list[Path]:
+    """Surfaces of triangles that name other files, and have no triangle themselves."""
+    reference = f"0\nSECTION\n2\nBLOCKS\n0\nBLOCK\n8\n0\n70\n4\n1\n{secret}\n0\nENDBLK\n0\nENDSEC\n"
+    insert = "0\nSECTION\n2\nENTITIES\n0\nINSERT\n2\nX\n0\nIMAGE\n1\n%s\n0\nENDSEC\n0\nEOF\n"
+    texts = {
+        "materials.obj": f"mtllib {secret}\nmtllib {url}/a.mtl\nv 0 0 0\n",
+        "call.obj": f"call {secret}\ncsh cat {secret}\nv 0 0 0\n",
+        "texture.ply": f"ply\nformat ascii 1.0\ncomment TextureFile {secret}\nelement vertex 0\n"
+        "property float x\nproperty float y\nproperty float z\nend_header\n",
+        "xref.dxf": reference + insert % secret,
+        "net.dxf": insert % f"{url}/a.png",
+        "script.ts": f"GOCAD TSurf 1\nHEADER {{\nname:a\n*script:{secret}\n}}\nFILE {url}/a\nEND\n",
+        "voxet.ts": f"GOCAD Voxet 1\nPROP_FILE 1 {secret}\nEND\n",
+        "huge.stl": "solid a\n" + "facet normal 0 0 1\n" * 100,
+        "count.ply": "ply\nformat binary_little_endian 1.0\nelement vertex 2000000000\n"
+        "property double x\nproperty double y\nproperty double z\nend_header\n",
+        "mesh.dxf": "0\nSECTION\n2\nENTITIES\n0\nPOLYLINE\n70\n16\n71\n2000000\n72\n2000000\n"
+        "0\nSEQEND\n0\nENDSEC\n0\nEOF\n",
+    }
+    for name, text in texts.items():
+        (folder / name).write_text(text)
+    return [folder / name for name in texts]

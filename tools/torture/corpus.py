@@ -82,6 +82,7 @@ def write_files(folder: Path) -> None:
     _write_meshes(folder)
     _write_bodies(folder)
     _write_terrain(folder)
+    _write_facets(folder)
     (folder / "history-a.csv").write_text("# blast\ntime [ms]; factor [%]\n0; 0\n0.5; 100\n2; 30\n")
     (folder / "history-b.txt").write_text("0 0\n0.5\t1e0\n2 -.3\n")
     _write_records(folder)
@@ -211,6 +212,21 @@ def _write_bodies(folder: Path) -> None:
     grid = pyvista.UnstructuredGrid([len(row), *row], [pyvista.CellType.POLYHEDRON], corner)
     for name, binary in (("a.vtu", False), ("b.vtu", True), ("a.vtk", False), ("b.vtk", True)):
         grid.save(folder / f"body-{name}", binary=binary)
+
+
+def _write_facets(folder: Path) -> None:
+    """Surfaces of triangles; cubes have two heights, so each is a sheet."""
+    sys.path[:0] = [str(ROOT / "tests")]
+    import numpy as np
+    from shared import facets
+
+    points, triangles = facets.sheet(lambda x, y: x / 4 + y, np.arange(0, 16, 5), np.arange(0, 11, 5))
+    system = 'GOCAD_ORIGINAL_COORDINATE_SYSTEM\nAXIS_UNIT "m" "m" "ft"\nZPOSITIVE Depth\n'
+    facets.write(folder / "facets-a.obj", points, triangles)
+    facets.write(folder / "facets-a.ts", points, triangles, system=system + "END_ORIGINAL_COORDINATE_SYSTEM")
+    facets.write(folder / "facets-a.dxf", points, triangles, layer="A")
+    for kind in ("stl", "bin.stl", "ply", "bin.ply"):
+        facets.write(folder / f"facets-{kind[0]}.{kind}", points, triangles)
 
 
 def _write_terrain(folder: Path) -> None:

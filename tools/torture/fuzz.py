@@ -167,10 +167,12 @@ def read_file(path: Path) -> None:
     from cdem.model.body_files import read_bodies
     from cdem.outcrop.cloud_files import read_outcrop
     from cdem.terrain.clouds import read_cloud
+    from cdem.terrain.facet_files import read_facets
     from cdem.terrain.files import read_lines, read_outline
     from cdem.terrain.heights import Lines
     from cdem.terrain.projection import Projection
     from cdem.terrain.rasters import read_grid
+    from cdem.terrain.triangles import Triangles
 
     kind = path.name.split("-")[0]
     if kind == "mesh":
@@ -181,6 +183,9 @@ def read_file(path: Path) -> None:
         Lines(read_lines(path), 5.0)
     elif kind == "grid":
         read_grid(path)
+    elif kind == "facets":
+        found = read_facets(path, "A" if path.suffix == ".dxf" else None)
+        Triangles(found.points, found.triangles, found.rounding)(np.full((1, 2), 5.0))
     elif kind == "history":
         with_histories({"history": {"file": path.name}}, Source(file=str(path)))
     elif kind == "record":

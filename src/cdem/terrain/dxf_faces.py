@@ -158,7 +158,12 @@ def _mesh(path: Path, found: _Found, pending: list[Groups]) -> None:
         ]
     else:
         corners = [_point(one, 0) for one in vertices]
-        loops = _of_grid(_whole(head, 71), _whole(head, 72), _whole(head, 70))
+        rows, columns = _whole(head, 71), _whole(head, 72)
+        if min(rows, columns) < 2 or rows * columns != len(corners):
+            raise CaseError(
+                f"{path}: a polyline mesh of {rows} by {columns} points has {len(corners)}"
+            )
+        loops = _of_grid(rows, columns, _whole(head, 70))
     if any(len(loop) < 3 or max(loop) >= len(corners) for loop in loops):
         raise CaseError(f"{path}: a polyline mesh names vertices that it does not have")
     found.add(_layer(head), corners, loops)

@@ -14,13 +14,12 @@ from cdem.mesh.obj_file import NO_SHAPE, read_obj, within
 from cdem.terrain.dxf_faces import read_dxf_faces
 from cdem.terrain.facets import Facets, fanned
 from cdem.terrain.gocad import read_gocad
+from cdem.terrain.stl_file import read_stl
 
 KINDS = (".obj", ".stl", ".ply", ".ts", ".dxf")
 MEND = f"a surface of triangles is read from {', '.join(KINDS[:-1])} or {KINDS[-1]}"
 LOOKS = "mtllib"
 """Word of an OBJ file that names a file of materials, which is not opened."""
-SINGLE = 2.0**-24
-"""Relative rounding of numbers in an STL file, which keeps seven digits."""
 SHOWN = 4
 """Most kinds in a note."""
 
@@ -69,7 +68,9 @@ def _read(path: Path, kind: str, layer: str | None) -> Facets:
         return read_gocad(path)
     if kind == ".dxf":
         return read_dxf_faces(path, layer)
-    return _obj(path) if kind == ".obj" else _by_meshio(path, kind)
+    if kind == ".stl":
+        return read_stl(path)
+    return _obj(path) if kind == ".obj" else _ply(path)
 
 
 def _obj(path: Path) -> Facets:
@@ -81,7 +82,7 @@ def _obj(path: Path) -> Facets:
     return Facets(found.points, fanned(found.loops), notes, others)
 
 
-def _by_meshio(path: Path, kind: str) -> Facets:
+def _ply(path: Path) -> Facets:
     raw = read_raw(path)
     loops: list[list[int]] = []
     others: Counter[str] = Counter()
@@ -95,13 +96,4 @@ def _by_meshio(path: Path, kind: str) -> Facets:
         raise CaseError(f"{path}: its corners have no three coordinates")
     if not all(within(loop, len(points)) for loop in loops):
         raise CaseError(f"{path}: a face refers to a missing corner")
-    found = Facets(points, fanned(loops), [], others)
-    if kind == ".stl" and loops:
-        largest = float(np.abs(points).max())
-        found.rounding = SINGLE * largest
-        if found.rounding > 1e-3:
-            found.notes.append(
-                f"{path.name}: STL keeps seven digits, so coordinates of {largest:.3g} are right to "
-                f"{found.rounding:.2g} only; export another format, or subtract an offset"
-            )
-    return found
+    return Facets(points, fanned(loops), [], others)

@@ -34,6 +34,7 @@ GUARDS = {
     "GDAL has only the drivers": "unit/terrain/test_gdal.py::test_other_drivers_are_gone",
     "A VRT names plain grids": STRANGERS,
     "A KML file that links": STRANGERS,
+    "Materials and references": STRANGERS,
     "A GeoPackage holds": STRANGERS,
     "HDF5 files, frames": "unit/run/test_links.py::test_frames_that_lead_elsewhere_are_refused",
     "Meshes in several files": STRANGERS,
