@@ -220,10 +220,14 @@ def _write_facets(folder: Path) -> None:
     import numpy as np
     from shared import facets
 
-    points, triangles = facets.sheet(lambda x, y: x / 4 + y, np.arange(0, 16, 5), np.arange(0, 11, 5))
+    points, triangles = facets.sheet(
+        lambda x, y: x / 4 + y, np.arange(0, 16, 5), np.arange(0, 11, 5)
+    )
     system = 'GOCAD_ORIGINAL_COORDINATE_SYSTEM\nAXIS_UNIT "m" "m" "ft"\nZPOSITIVE Depth\n'
     facets.write(folder / "facets-a.obj", points, triangles)
-    facets.write(folder / "facets-a.ts", points, triangles, system=system + "END_ORIGINAL_COORDINATE_SYSTEM")
+    facets.write(
+        folder / "facets-a.ts", points, triangles, system=system + "END_ORIGINAL_COORDINATE_SYSTEM"
+    )
     facets.write(folder / "facets-a.dxf", points, triangles, layer="A")
     for kind in ("stl", "bin.stl", "ply", "bin.ply"):
         facets.write(folder / f"facets-{kind[0]}.{kind}", points, triangles)

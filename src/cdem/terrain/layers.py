@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -136,7 +137,7 @@ def _divided(landslide: Landslide, plan: Floats, z: Floats, points: list[Floats]
     count = len(plan)
     ids = [np.arange(count)]
     columns = []
-    for part, (above, below) in enumerate(zip(z[:-1], z[1:], strict=True)):
+    for part, (above, below) in enumerate(pairwise(z)):
         far = sizes.far if part == len(z) - 2 else sizes.body
         own, feet = Columns(), ids[-1].copy()
         for at, (top, height) in enumerate(zip(ids[-1].tolist(), above - below, strict=True)):

@@ -255,9 +255,7 @@ class Body(Part):
 class Sizes(Part):
     """Edge lengths of the elements."""
 
-    body: Size = Field(
-        description="In the bodies and layers; for bare ground at its surface [m]"
-    )
+    body: Size = Field(description="In the bodies and layers; for bare ground at its surface [m]")
     far: Size = Field(description="Largest, far from the bodies; height of those below layers [m]")
     growth: Annotated[float, Quantity("1", above=0, at_most=1)] = Field(
         0.3, description="Growth of the edge length per distance from the bodies [1]"

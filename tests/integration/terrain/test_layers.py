@@ -9,7 +9,8 @@ from integration.terrain.test_solid import check_conforming
 from shared.facets import KINDS, dxf_text, sheet, write
 
 from cdem.mesh.mesh_files import read_mesh
-from cdem.terrain import Landslide, make_mesh, measure, text, write as write_mesh
+from cdem.terrain import Landslide, make_mesh, measure, text
+from cdem.terrain import write as write_mesh
 
 pytest.importorskip("scipy", reason="needs the extra 'terrain'")
 pytest.importorskip("netgen", reason="needs the extra 'terrain'")
@@ -124,7 +125,10 @@ def files(folder, kind):
     }
     for name, shape in shapes.items():
         # whole 1/1024 m: STL keeps seven digits
-        write(folder / f"{name}.{kind}", *sheet(lambda a, b, f=shape: np.round(f(a, b) * 1024) / 1024, x, y))
+        write(
+            folder / f"{name}.{kind}",
+            *sheet(lambda a, b, f=shape: np.round(f(a, b) * 1024) / 1024, x, y),
+        )
     text = (
         f"terrain: {{triangles: topo.{kind}}}\nextent: {{x: [0, 90], y: [0, 60], base: 20}}\n"
         f"layers:\n  - {{group: soil, base: {{triangles: soil.{kind}}}}}\n"

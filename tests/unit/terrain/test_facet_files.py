@@ -9,7 +9,9 @@ from shared.facets import KINDS, dxf_text, gocad_text, obj_text, sheet, write
 from cdem.errors import CaseError
 from cdem.terrain.facet_files import read_facets
 
-POINTS, TRIANGLES = sheet(lambda x, y: 100 + x / 8 - y / 4, np.arange(0, 40, 8), np.arange(0, 32, 8))
+POINTS, TRIANGLES = sheet(
+    lambda x, y: 100 + x / 8 - y / 4, np.arange(0, 40, 8), np.arange(0, 32, 8)
+)
 CORNERS = POINTS[TRIANGLES]
 
 
@@ -22,7 +24,9 @@ def test_every_format_gives_the_same_triangles(tmp_path, kind):
 
 def test_what_is_not_used_is_told(tmp_path):
     path = tmp_path / "a.obj"
-    path.write_text("mtllib ../secret.mtl\nusemtl a\nvt 0 0\ncurv 1\n" + obj_text(POINTS, TRIANGLES))
+    path.write_text(
+        "mtllib ../secret.mtl\nusemtl a\nvt 0 0\ncurv 1\n" + obj_text(POINTS, TRIANGLES)
+    )
     found = read_facets(path)
     assert found.notes == [
         "a.obj: the file of its materials (mtllib) is not opened",
@@ -81,7 +85,9 @@ def test_a_missing_file_a_folder_and_a_layer_of_no_dxf(tmp_path):
 def test_a_truncated_binary_stl(tmp_path):
     path = tmp_path / "a.stl"
     path.write_bytes(b" " * 80 + struct.pack("<I", 1000) + b"\0" * 60)
-    with pytest.raises(CaseError, match=r"1000 triangles of a binary file take 50084 bytes, but it has 144"):
+    with pytest.raises(
+        CaseError, match=r"1000 triangles of a binary file take 50084 bytes, but it has 144"
+    ):
         read_facets(path)
 
 
@@ -89,8 +95,8 @@ def test_a_truncated_binary_stl(tmp_path):
 
 
 SYSTEM = (
-    "GOCAD_ORIGINAL_COORDINATE_SYSTEM\nNAME Default\n{}AXIS_NAME \"X\" \"Y\" \"Z\"\n"
-    'AXIS_UNIT {}\nZPOSITIVE {}\nEND_ORIGINAL_COORDINATE_SYSTEM'
+    'GOCAD_ORIGINAL_COORDINATE_SYSTEM\nNAME Default\n{}AXIS_NAME "X" "Y" "Z"\n'
+    "AXIS_UNIT {}\nZPOSITIVE {}\nEND_ORIGINAL_COORDINATE_SYSTEM"
 )
 
 
@@ -123,7 +129,9 @@ def test_gocad_depths_and_feet_are_told_and_turned(tmp_path):
         "its z is a depth (ZPOSITIVE Depth); heights are -z",
         "'PROJECTION UTM32' is not used; give crs beside the file",
     ]
-    found = read_facets(write(path, POINTS, TRIANGLES, system=SYSTEM.format("", '"m" "m" "ft"', "Elevation")))
+    found = read_facets(
+        write(path, POINTS, TRIANGLES, system=SYSTEM.format("", '"m" "m" "ft"', "Elevation"))
+    )
     assert found.unit == "ft" and np.array_equal(found.points[found.triangles], CORNERS)
 
 
@@ -132,7 +140,9 @@ def test_several_surfaces_of_one_gocad_file_are_one(tmp_path):
     second = POINTS + [32, 0, 4]
     path.write_text(gocad_text(POINTS, TRIANGLES) + gocad_text(second, TRIANGLES))
     found = read_facets(path)
-    assert np.array_equal(found.points[found.triangles], np.concatenate([CORNERS, second[TRIANGLES]]))
+    assert np.array_equal(
+        found.points[found.triangles], np.concatenate([CORNERS, second[TRIANGLES]])
+    )
     assert found.notes == ["a.ts: its 2 surfaces are taken as one"]
 
 
@@ -166,7 +176,9 @@ def groups(*pairs):
 
 def test_dxf_layers_are_chosen(tmp_path):
     path = tmp_path / "a.dxf"
-    other = dxf_text(POINTS + [0, 0, 50], TRIANGLES, "UP").split("ENTITIES\n")[1].split("0\nENDSEC")[0]
+    other = (
+        dxf_text(POINTS + [0, 0, 50], TRIANGLES, "UP").split("ENTITIES\n")[1].split("0\nENDSEC")[0]
+    )
     line = groups((0, "LINE"), (8, "UP"), (10, 0), (20, 0), (11, 1), (21, 1))
     path.write_text(dxf_text(POINTS, TRIANGLES, "DOWN", [*other.split("\n")[:-1], *line]))
     with pytest.raises(CaseError, match=r"choose one with 'layer': DOWN \(24\), UP \(24\)"):
@@ -199,7 +211,9 @@ def test_dxf_quadrilaterals_and_meshes_of_polylines(tmp_path):
     mesh = groups((0, "POLYLINE"), (8, "A"), (66, 1), (70, 16), (71, 2), (72, 3))
     mesh += vertices([(x, y) for x in (18, 27) for y in (0, 4, 9)], 64)
     path = tmp_path / "a.dxf"
-    path.write_text(dxf_text(POINTS[:0], [], more=[*face, *polyface, *mesh, *groups((0, "SEQEND"))]))
+    path.write_text(
+        dxf_text(POINTS[:0], [], more=[*face, *polyface, *mesh, *groups((0, "SEQEND"))])
+    )
     found = read_facets(path)
     assert len(found.triangles) == 8 and found.notes == []
     corners = found.points[found.triangles]

@@ -86,20 +86,26 @@ def test_mistakes_are_answered(changes, message):
 
 
 def test_a_surface_that_ends_or_folds_inside_the_extent(tmp_path):
-    points, triangles = sheet(lambda x, y: 90 + 0 * x, np.linspace(-5, 50, 5), np.linspace(-5, 45, 5))
+    points, triangles = sheet(
+        lambda x, y: 90 + 0 * x, np.linspace(-5, 50, 5), np.linspace(-5, 45, 5)
+    )
     write(tmp_path / "short.obj", points, triangles)
     data = layered(layers=[{"group": "a", "base": {"triangles": str(tmp_path / "short.obj")}}])
     with pytest.raises(CaseError, match=r"layers\.0\.base: has no data at \(60, 0\); it reaches from "
                        r"\(-5, -5\) to \(50, 45\); make the extent smaller, or give data"):  # fmt: skip
         make_mesh(Landslide(**data))
-    points, triangles = sheet(lambda x, y: 90 + 0 * x, np.linspace(-5, 65, 8), np.linspace(-5, 45, 6))
+    points, triangles = sheet(
+        lambda x, y: 90 + 0 * x, np.linspace(-5, 65, 8), np.linspace(-5, 45, 6)
+    )
     hole = triangles[: len(triangles) // 2 - 5]
     write(tmp_path / "short.obj", points, np.concatenate([hole, triangles[len(hole) + 10 :]]))
     with pytest.raises(CaseError, match=r"layers\.0\.base: has no data at \(.*\); .* with gaps"):
         make_mesh(Landslide(**data))
     twice = np.concatenate([triangles, triangles + len(points)])
     write(tmp_path / "short.obj", np.concatenate([points, points - [0, 0, 9]]), twice)
-    with pytest.raises(CaseError, match=r"layers\.0\.base\.triangles: .*short\.obj: has two heights at"):
+    with pytest.raises(
+        CaseError, match=r"layers\.0\.base\.triangles: .*short\.obj: has two heights at"
+    ):
         make_mesh(Landslide(**data))
 
 
@@ -107,6 +113,8 @@ def test_parts_of_a_column_grow_downwards():
     """10, 15, 22.5 m with a growth of a half; equal parts where none may be larger than the first."""
     depth = lambda parts, height: -np.diff(np.array(parts[::-1])) * height  # noqa: E731
     assert depth(graded(47.5, 10, 100, 0.5), 47.5) == pytest.approx([10, 15, 22.5])
-    assert depth(graded(90, 10, 20, 0.5), 90) == pytest.approx(np.array([10, 15, 20, 20, 20]) * 90 / 85)
+    assert depth(graded(90, 10, 20, 0.5), 90) == pytest.approx(
+        np.array([10, 15, 20, 20, 20]) * 90 / 85
+    )
     assert depth(graded(34, 10, 10, 0.3), 34) == pytest.approx([34 / 3] * 3)
     assert graded(3, 10, 10, 0.3) == [0, 1]
