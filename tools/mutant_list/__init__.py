@@ -32,6 +32,7 @@ from mutant_list import (
     screening,
     seismic,
     study,
+    terrain,
 )
 from mutant_list.mutant import Mutant
 
@@ -49,6 +50,7 @@ PYTHON = [
     screening,
     seismic,
     blasts,
+    terrain,
 ]
 CORE = [
     bindings,

@@ -20,6 +20,8 @@ KINDS = (".obj", ".stl", ".ply", ".ts", ".dxf")
 MEND = f"a surface of triangles is read from {', '.join(KINDS[:-1])} or {KINDS[-1]}"
 LOOKS = "mtllib"
 """Word of an OBJ file that names a file of materials, which is not opened."""
+FARTHEST = 1e9
+"""Coordinates from which on numbers are no places [m]."""
 SHOWN = 4
 """Most kinds in a note."""
 
@@ -53,9 +55,12 @@ def read_facets(path: Path, layer: str | None = None) -> Facets:
     if not len(found.triangles):
         raise CaseError(f"{path}: contains no triangles")
     used = np.unique(found.triangles)
-    bad = used[~np.isfinite(found.points[used]).all(axis=1)]
+    bad = used[~(np.abs(found.points[used]) < FARTHEST).all(axis=1)]
     if len(bad):
-        raise CaseError(f"{path}: {len(bad)} of its corners have a coordinate that is not finite")
+        raise CaseError(
+            f"{path}: {len(bad)} of its corners have a coordinate that is not finite, or beyond "
+            f"{FARTHEST:.0e}"
+        )
     if found.others:
         kinds = ", ".join(f"{n} of '{kind}'" for kind, n in found.others.most_common(SHOWN))
         more = f" and {len(found.others) - SHOWN} kinds more" if len(found.others) > SHOWN else ""

@@ -57,6 +57,7 @@ def test_stl_on_a_map_is_told_to_be_rounded(tmp_path):
         ("a.obj", "v 0 0 zero\n", r"a\.obj:1: cannot be read: v 0 0 zero"),
         ("a.obj", "v 0 0 0\nf 1 2 3\n", r"a\.obj:2: a face needs three or more vertices"),
         ("a.obj", "v 0 0 nan\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", r"1 of its corners .* not finite"),
+        ("a.obj", "v 0 0 1e300\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", r"not finite, or beyond 1e\+09"),
         ("a.stl", "solid a\nfacet normal 0 0 1\n", r"contains no triangles"),
         ("a.stl", "solid a\nfacet\nvertex 0 0 0\n", r"ends within a facet; is it complete"),
         ("a.stl", "solid a\nvertex 0 0 0\nendfacet\n", r"a\.stl:3: a facet has three vertices"),
