@@ -178,7 +178,7 @@ def mesh(
     ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
 ) -> None:
-    """Mesh a landslide from terrain, a sliding surface and bodies outlined in plan."""
+    """Mesh a landslide or layers: terrain with bodies outlined in plan, or with layer surfaces."""
     from cdem import terrain
     from cdem.run.progress import busy
 

@@ -10,10 +10,11 @@ from pathlib import Path
 import numpy as np
 
 from cdem.errors import CaseError
+from cdem.mesh.obj_file import within
 from cdem.terrain.facets import Facets, fanned
 
 BINARY = b"AutoCAD Binary DXF"
-POLYGON_MESH, POLYFACE, CLOSED_M, CLOSED_N, IS_FACE, IS_POINT = 16, 64, 1, 32, 128, 64
+POLYGON_MESH, POLYFACE, CLOSED_M, CLOSED_N, IS_POINT = 16, 64, 1, 32, 64
 """Bits of group 70 of a POLYLINE and of its VERTEX."""
 METRES, UNITLESS = 6, 0
 """Values of $INSUNITS."""
@@ -150,12 +151,7 @@ def _mesh(path: Path, found: _Found, pending: list[Groups]) -> None:
     """Faces of a polyface mesh, or of a mesh of M by N points."""
     head, vertices = pending[0], pending[1:]
     if _whole(head, 70) & POLYFACE:
-        faces = [one for one in vertices if not _whole(one, 70) & IS_POINT]
-        corners = [_point(one, 0) for one in vertices if _whole(one, 70) & IS_POINT]
-        loops = [
-            [abs(int(value)) - 1 for code, value in one if 71 <= code <= 74 and int(value)]
-            for one in faces
-        ]
+        corners, loops = _polyface(vertices)
     else:
         corners = [_point(one, 0) for one in vertices]
         rows, columns = _whole(head, 71), _whole(head, 72)
@@ -164,9 +160,21 @@ def _mesh(path: Path, found: _Found, pending: list[Groups]) -> None:
                 f"{path}: a polyline mesh of {rows} by {columns} points has {len(corners)}"
             )
         loops = _of_grid(rows, columns, _whole(head, 70))
-    if any(len(loop) < 3 or max(loop) >= len(corners) for loop in loops):
+    if not all(within(loop, len(corners)) for loop in loops):
         raise CaseError(f"{path}: a polyline mesh names vertices that it does not have")
     found.add(_layer(head), corners, loops)
+
+
+def _polyface(vertices: list[Groups]) -> tuple[list[list[float]], list[list[int]]]:
+    """Corners and faces; a number is negative where the edge after it is hidden."""
+    points = [bool(_whole(one, 70) & IS_POINT) for one in vertices]
+    corners = [_point(one, 0) for one, is_point in zip(vertices, points, strict=True) if is_point]
+    loops = [
+        [abs(int(value)) - 1 for code, value in one if 71 <= code <= 74 and int(value)]
+        for one, is_point in zip(vertices, points, strict=True)
+        if not is_point
+    ]
+    return corners, loops
 
 
 def _of_grid(rows: int, columns: int, flags: int) -> list[list[int]]:

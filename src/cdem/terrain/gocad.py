@@ -83,7 +83,7 @@ def read_gocad(path: Path) -> Facets:
 
 
 def _take(path: Path, file: _File, words: list[str]) -> None:
-    """Take a line."""
+    """Take a line: a new surface, a vertex or a triangle."""
     word = words[0]
     if word == "GOCAD":
         if words[1].lower() != "tsurf":
@@ -102,18 +102,26 @@ def _take(path: Path, file: _File, words: list[str]) -> None:
     elif word == "TRGL":
         a, b, c = words[1:4]
         file.triangles.append([here.number[a], here.number[b], here.number[c]])
-    elif word == "ZPOSITIVE":
+    else:
+        _take_other(file, here, words)
+
+
+def _take_other(file: _File, here: _Object, words: list[str]) -> None:
+    """Take a line on the axes, or one without effect."""
+    word = words[0]
+    if word == "ZPOSITIVE":
         if words[1].lower() not in SIGNS:
             raise ValueError(words[1])
         here.sign = SIGNS[words[1].lower()]
     elif word == "AXIS_UNIT":
         a, b, c = (name.strip("\"'") for name in words[1:4])
         here.units = [a, b, c]
-    elif word in CLAIMS and words[1:] and words[1].lower() not in ("unknown", "none"):
-        file.claims.append(" ".join(words))
+    elif word in CLAIMS:
+        if words[1:] and words[1].lower() not in ("unknown", "none"):
+            file.claims.append(" ".join(words))
     elif word in DATA:
         file.data = True
-    elif word not in KNOWN and word not in CLAIMS and not word.startswith("#"):
+    elif word not in KNOWN and not word.startswith("#"):
         file.others[word] += 1
 
 
