@@ -16,7 +16,7 @@ VERBS = {
     "site": ("site", "Read a DEM and an outline; write a landslide and a case to start from."),
     "mesh": (
         "model",
-        "Mesh a landslide from terrain, a sliding surface and bodies outlined in plan.",
+        "Mesh a landslide or layers: terrain with bodies outlined in plan, or with layer surfaces.",
     ),
     "joints": (
         "screening",
