@@ -53,11 +53,9 @@ def listener():
         (strangers.write_rasters, read_raster, 33, range(33)),
         (strangers.write_meshes, read_mesh, 5, range(5)),
         (strangers.write_clouds, read_outcrop, 6, range(6)),
-    ],
-    ids=["vectors", "all vectors", "more vectors", "rasters", "meshes", "clouds"],
         (strangers.write_facets, read_facets, 10, range(10)),
     ],
-    ids=["vectors", "all vectors", "more vectors", "rasters", "meshes", "facets"],
+    ids=["vectors", "all vectors", "more vectors", "rasters", "meshes", "clouds", "facets"],
 )
 def test_no_file_leads_elsewhere_or_to_no_end(
     tmp_path, monkeypatch, listener, write, read, count, taken
