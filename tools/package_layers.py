@@ -25,6 +25,7 @@ FOLDERS = {
     "output": "text, plots, pictures, files, viewer",
     "study": "sweeps, factor of safety, tests of laws",
     "rockfall": "blocks that fall over terrain, their statistics",
+    "fit": "observations against runs, parameters that fit",
     "screening": "closed-form factors of safety over maps",
     "verification": "problems with a known answer",
     "tools": "doctor, benchmark, build of own laws",

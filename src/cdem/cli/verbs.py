@@ -36,6 +36,10 @@ VERBS = {
         "rockfall",
         "Let hundreds of blocks fall over a terrain; heights, energies and counts at barriers.",
     ),
+    "fit": (
+        "fit",
+        "Find the parameters of a study that agree with observations, with their uncertainty.",
+    ),
     "verify": (
         "installation",
         "Compute problems with known answers and compare; exit status 3 if one is missed.",

@@ -148,11 +148,11 @@ def read_outline(path: Path, projection: Projection) -> Any:
     """
     shapely = extra("shapely", WHAT)
     found = read_features(path)
-    with reading(path, CaseError, "--against needs a polygon or a closed line"):
+    with reading(path, CaseError, "an outline is a polygon or a closed line"):
         shapes = [shapely.geometry.shape(geometry) for geometry, _ in found.items]
         areas = [area for shape in shapes for area in _areas(shapely.force_2d(shape))]
     if not areas:
-        raise CaseError(f"{path}: contains no polygon or closed line; --against needs one")
+        raise CaseError(f"{path}: contains no polygon or closed line; an outline is one of them")
     outline = shapely.union_all(shapely.make_valid(np.array(areas)))
     return shapely.transform(
         outline, lambda points: projection.bring(path, found.label, None, points)

@@ -1,0 +1,67 @@
+"""A fit: the file that names a study and the observations."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from pydantic import PrivateAttr, ValidationError
+
+from cdem.case.explain import explain
+from cdem.case.reader import load_case_data, plain
+from cdem.case.source import Keys, Source
+from cdem.errors import CaseError
+from cdem.fit.schema import FitParts
+from cdem.study.study import Study
+
+
+class Fit(FitParts):
+    """A whole fit. Load one from a file, or build it here with the same names.
+
+    Raises:
+        CaseError: Every problem found, one line each: file:line:column: path: problem.
+    """
+
+    _source: Source = PrivateAttr(default_factory=Source)
+
+    def __init__(self, _source: Source | None = None, **data: Any) -> None:
+        source = _source or Source()
+        try:
+            super().__init__(**plain(data, source))
+        except ValidationError as error:
+            raise explain(error, source, Fit) from None
+        self._source = source
+
+    @classmethod
+    def load(cls, path: str | Path) -> Fit:
+        """Read a fit file.
+
+        Raises:
+            CaseError: The file cannot be read or is wrong; one line for each problem.
+        """
+        data, source = load_case_data(Path(path), what="fit")
+        return cls(_source=source, **data)
+
+    def load_study(self) -> Study:
+        """The study that is named.
+
+        Raises:
+            CaseError: It cannot be read or is wrong.
+        """
+        return Study.load(self.path_of(self.study))
+
+    @property
+    def folder(self) -> Path:
+        """Folder of the results of the study."""
+        if self.sweep is not None:
+            return self.path_of(self.sweep)
+        study = self.path_of(self.study)
+        return study.with_name(f"{study.stem}.sweep")
+
+    def path_of(self, name: str) -> Path:
+        """Path of a file that is named relative to the fit file."""
+        return self._source.folder / name
+
+    def error(self, keys: Keys, what: str) -> CaseError:
+        """An error about one place of the fit."""
+        return self._source.error([(keys, what)])
