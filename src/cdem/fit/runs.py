@@ -15,6 +15,7 @@ from cdem.errors import CaseError, CdemError
 from cdem.fit.fitting import Fit
 from cdem.fit.observed import Observed, observed
 from cdem.fit.priors import Prior
+from cdem.fit.schema import OfResult
 from cdem.output.runout import measure
 from cdem.output.runout_result import RunOut
 from cdem.study.plan import plan
@@ -74,6 +75,7 @@ def runs_of(fit: Fit, report: Report | None = None) -> Runs:
     wanted = observed(fit, case.get("crs"))
     notes = [note for one in wanted for note in one.notes]
     table = _table(fit, study, notes)
+    _check_columns(fit, table)
     names = _varied(fit, table)
     used, results = _results(fit, table, names, wanted, notes, report)
     _check_count(fit, used, names, notes)
@@ -100,6 +102,18 @@ def _table(fit: Fit, study: Study, notes: list[str]) -> Table:
     if table.failed:
         notes.append(f"{len(table.failed)} runs failed and are left out")
     return table
+
+
+def _check_columns(fit: Fit, table: Table) -> None:
+    """Every observed result must be a column of the table."""
+    rows = table.rows
+    known = sorted({name for row in rows for name, value in row.items() if value is not None})
+    for number, part in enumerate(fit.observed):
+        if isinstance(part, OfResult) and part.result not in known and known:
+            raise fit.error(
+                ("observed", number, "result"),
+                f"no column {part.result} in the table of the study; it has: {', '.join(known)}",
+            )
 
 
 def _varied(fit: Fit, table: Table) -> list[str]:
