@@ -36,6 +36,10 @@ VERBS = {
         "rockfall",
         "Let hundreds of blocks fall over a terrain; heights, energies and counts at barriers.",
     ),
+    "compare": (
+        "fit",
+        "Compare a run with monitored displacements: residuals, scores and a picture.",
+    ),
     "fit": (
         "fit",
         "Find the parameters of a study that agree with observations, with their uncertainty.",
