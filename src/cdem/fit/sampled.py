@@ -9,7 +9,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cdem.errors import CdemError
-from cdem.mesh.element_volumes import Solids
 from cdem.output.meshes import volume_mesh
 from cdem.output.reader import FrameSeries
 
@@ -41,8 +40,7 @@ class Sampled:
         self._first = self._start()
         self.times = self._series.times[self._first :] - self._series.times[self._first]
         mesh = volume_mesh(self._series, self._first)
-        at = self._with_heights(at)
-        self.distance, self._nodes, self._weights = _found(mesh, at)
+        self.distance, self._nodes, self._weights = _found(mesh, _with_heights(mesh, at))
 
     def _start(self) -> int:
         """The last frame without displacements."""
@@ -50,18 +48,6 @@ class Sampled:
             if not self._series.field("PointData", "displacement", frame).any():
                 return frame
         return 0
-
-    def _with_heights(self, at: Floats) -> Floats:
-        """Places with the height of the surface where theirs is not known."""
-        missing = np.isnan(at[:, 2])
-        if not missing.any():
-            return at
-        out = at.copy()
-        solids = Solids.of(self._series.points(self._first), self._series.cells)
-        for row in np.flatnonzero(missing):
-            x, y = at[row, :2]
-            out[row, 2] = solids.tops(np.array([x, x + 1.0]), np.array([y, y + 1.0]))[0, 0]
-        return out
 
     def at(self, time: Floats) -> Floats:
         """Displacement of each place at its own time, linear between frames [m], shape (places, 3).
@@ -88,23 +74,52 @@ class Sampled:
         return np.einsum("pk,pkx->px", self._weights[rows], field[self._nodes[rows]])
 
 
+def _with_heights(mesh: Any, at: Floats) -> Floats:
+    """Places with the height of the surface where theirs is not known; nan where there is no rock."""
+    from vtkmodules.vtkCommonCore import reference
+
+    missing = np.flatnonzero(np.isnan(at[:, 2]))
+    if not len(missing):
+        return at
+    out = at.copy()
+    surface = mesh.extract_surface(algorithm=None)
+    locator = _locator(surface)
+    low, high = mesh.bounds[4] - 1.0, mesh.bounds[5] + 1.0
+    for row in missing:
+        x, y = at[row, :2]
+        hit = [0.0] * 3
+        found = locator.IntersectWithLine(
+            (x, y, high), (x, y, low), 1e-9, reference(0.0), hit, [0.0] * 3, reference(0)
+        )
+        out[row, 2] = hit[2] if found else np.nan
+    return out
+
+
+def _locator(mesh: Any) -> Any:
+    """A search tree over the cells of a mesh."""
+    from vtkmodules.vtkCommonDataModel import vtkStaticCellLocator
+
+    locator = vtkStaticCellLocator()
+    locator.SetDataSet(mesh)
+    locator.BuildLocator()
+    return locator
+
+
 def _found(mesh: Any, at: Floats) -> tuple[Floats, NDArray[np.int64], Floats]:
     """Distance of places from a mesh; nodes of the nearest element, shape (places, 8), and weights."""
     from vtkmodules.vtkCommonCore import reference
 
     distance, weights = np.full(len(at), np.nan), np.full((len(at), 8), np.nan)
     nodes = np.zeros((len(at), 8), np.int64)
-    known = np.flatnonzero(np.isfinite(at).all(axis=1))
-    cells = np.atleast_1d(mesh.find_closest_cell(at[known])) if len(known) else []
-    for row, number in zip(known, cells, strict=True):
+    locator = _locator(mesh)
+    for row in np.flatnonzero(np.isfinite(at).all(axis=1)):
+        closest, number, squared = [0.0] * 3, reference(0), reference(0.0)
+        locator.FindClosestPoint(at[row], closest, number, reference(0), squared)
         cell = mesh.GetCell(int(number))
         count = cell.GetNumberOfPoints()
-        closest, place, shares = [0.0] * 3, [0.0] * 3, [0.0] * count
-        squared: Any = reference(0.0)
-        cell.EvaluatePosition(at[row], closest, reference(0), place, squared, shares)
-        if squared > 0:  # outside: the weights of the nearest point of the element
-            cell.EvaluatePosition(closest, [0.0] * 3, reference(0), place, reference(0.0), shares)
-        distance[row] = float(squared) ** 0.5
+        shares = [0.0] * count
+        cell.EvaluatePosition(closest, [0.0] * 3, reference(0), [0.0] * 3, reference(0.0), shares)
+        distance[row] = float(squared) ** 0.5  # type: ignore[arg-type]
         nodes[row, :count] = [cell.GetPointId(k) for k in range(count)]
         weights[row] = 0.0
         weights[row, :count] = shares
