@@ -165,10 +165,13 @@ class SchemaReference(Directive):
     def run(self):
         """Sections of the whole schema."""
         from cdem.case.case import Case
+        from cdem.fit.fitting import Fit
         from cdem.rockfall.rockfall import Rockfall
+        from cdem.screening.uncertain import Uncertain
         from cdem.study.study import Study
 
-        kinds = {"case": Case, "study": Study, "rockfall": Rockfall}
+        kinds = {"case": Case, "study": Study, "fit": Fit}
+        kinds |= {"rockfall": Rockfall, "uncertain": Uncertain}
         return list(Reference(kinds[self.arguments[0]].schema()).sections())
 
 

@@ -83,6 +83,9 @@ def write_files(folder: Path) -> None:
     _write_bodies(folder)
     _write_terrain(folder)
     _write_facets(folder)
+    (folder / "monitored-a.csv").write_text(
+        "point;x;y;z;date;dx [mm];sx [mm]\nA;1;2;3;2024-03-01;4,5;1\nB;2;2;3;2024-03-02;;1\n"
+    )
     (folder / "history-a.csv").write_text("# blast\ntime [ms]; factor [%]\n0; 0\n0.5; 100\n2; 30\n")
     (folder / "history-b.txt").write_text("0 0\n0.5\t1e0\n2 -.3\n")
     _write_records(folder)

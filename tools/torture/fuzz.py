@@ -161,6 +161,7 @@ def read_file(path: Path) -> None:
     from cdem.case.record_file import read_series
     from cdem.case.source import Source
     from cdem.case.waves_schema import Record
+    from cdem.fit.monitored import read_monitored
     from cdem.joints.measured import read_measured
     from cdem.mesh.blocks import build_topology
     from cdem.mesh.mesh_files import read_mesh
@@ -197,6 +198,8 @@ def read_file(path: Path) -> None:
         read_outcrop(path)
     elif kind == "facets":
         read_measured(path)
+    elif kind == "monitored":
+        read_monitored(path)
     elif kind == "cloud":
         box = np.zeros(2), np.full(2, 9.0)
         read_cloud(path, Projection(None), None, box, 1.0, "ground")

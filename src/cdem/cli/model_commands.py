@@ -7,7 +7,7 @@ import json
 from collections.abc import Iterator
 from importlib import resources
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
@@ -192,14 +192,17 @@ def mesh(
 
 def schema(
     of: Annotated[
-        Literal["case", "study", "rockfall", "uncertain"], typer.Argument(help="Kind of file.")
+        Literal["case", "study", "fit", "rockfall", "uncertain"],
+        typer.Argument(help="Kind of file."),
     ] = "case",
 ) -> None:
     """Print the JSON schema of a kind of file, for editors."""
     from cdem.case.case import Case
+    from cdem.fit.fitting import Fit
     from cdem.rockfall.rockfall import Rockfall
     from cdem.screening.uncertain import Uncertain
     from cdem.study.study import Study
 
-    kinds = {"case": Case, "study": Study, "rockfall": Rockfall, "uncertain": Uncertain}
+    kinds: dict[str, Any] = {"case": Case, "study": Study, "fit": Fit}
+    kinds |= {"rockfall": Rockfall, "uncertain": Uncertain}
     print(json.dumps(kinds[of].schema(), indent=2))

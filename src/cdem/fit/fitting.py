@@ -42,6 +42,12 @@ class Fit(FitParts):
         data, source = load_case_data(Path(path), what="fit")
         return cls(_source=source, **data)
 
+    @classmethod
+    def schema(cls) -> dict[str, Any]:  # type: ignore[override]
+        """Return the JSON schema of a fit file, for editors."""
+        whole = cls.model_json_schema() | {"title": "cdem fit"}
+        return {"$schema": "https://json-schema.org/draft/2020-12/schema"} | whole
+
     def load_study(self) -> Study:
         """The study that is named.
 

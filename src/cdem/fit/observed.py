@@ -22,6 +22,7 @@ from cdem.output.runout_result import RunOut
 from cdem.terrain.heights import extra
 from cdem.terrain.projection import Projection
 from cdem.terrain.rasters import Raster, read_grid
+from cdem.terrain.schema import OutlineFile
 
 Floats = NDArray[np.float64]
 Row = dict[str, Any]
@@ -83,7 +84,7 @@ def observed(fit: Fit, crs: str | None) -> list[Observed]:
         elif isinstance(part, OfRunout):
             found.append(_measure(fit, number, part))
         elif isinstance(part, OfOutline):
-            found.append(_outline(part, fit.path_of(part.outline), crs))
+            found.append(_outline(fit, part, crs))
         elif isinstance(part, OfThickness):
             found.append(_thickness(part, fit.path_of(part.thickness)))
         else:
@@ -116,11 +117,13 @@ def _measure(fit: Fit, number: int, part: OfRunout) -> Observed:
     return Observed(name, "", np.array([part.value]), variance, of_run, True)
 
 
-def _outline(part: OfOutline, path: Path, crs: str | None) -> Observed:
+def _outline(fit: Fit, part: OfOutline, crs: str | None) -> Observed:
     """Distance of the edge of the affected area beyond points of the mapped edge [m]."""
     shapely = extra("shapely", "reading a mapped outline")
     projection = Projection(None if crs is None else look_up(crs))
-    area = read_outline(path, projection)
+    by = part.outline if isinstance(part.outline, OutlineFile) else OutlineFile(file=part.outline)
+    path = fit.path_of(by.file)
+    area = read_outline(path, projection, layer=by.layer, where=by.where, told=by.crs)
     length = part.length or ALIKE * _diagonal(area.bounds)
     edge = shapely.boundary(area)
     count = int(np.clip(round(edge.length / length * PER_LENGTH), 8, MOST_POINTS))

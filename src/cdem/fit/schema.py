@@ -7,6 +7,7 @@ from typing import Annotated, Any, Literal
 from pydantic import Discriminator, Field, Tag
 
 from cdem.case.types import MOST_SEEDS, Name, Part, Quantity
+from cdem.terrain.schema import OutlineFile
 
 Length = Annotated[float, Quantity("m")]
 Size = Annotated[float, Quantity("m", above=0)]
@@ -30,7 +31,10 @@ class OfResult(Part):
 class OfOutline(Part):
     """The outline of the area that rock met."""
 
-    outline: Name = Field(description="GIS file with polygons, relative to this file")
+    outline: Annotated[
+        Annotated[Name, Tag("name")] | Annotated[OutlineFile, Tag("file")],
+        Discriminator(lambda value: "name" if isinstance(value, str) else "file"),
+    ] = Field(description="GIS file with polygons, relative to this file")
     deviation: Size = Field(
         description="Standard deviation of the edge, of observation and model together [m]"
     )

@@ -61,6 +61,17 @@ class Deposit:
         """Area of the cells covered by rock [m2]."""
         return float(self.covered.sum() * self.cell**2)
 
+    def length(self, direction: float) -> float:
+        """Length of the covered cells along an azimuth [m], from the first to the last of them.
+
+        Args:
+            direction: Clockwise from y (north) [deg].
+        """
+        rows, columns = np.nonzero(self.covered)
+        azimuth = np.radians(direction)
+        along = self.cell * (columns * np.sin(azimuth) + rows * np.cos(azimuth))
+        return float(np.ptp(along) + self.cell)
+
     @property
     def raster(self) -> Raster:
         """Thickness in the covered cells."""

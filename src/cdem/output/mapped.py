@@ -136,18 +136,28 @@ def _cells_within(outline: Any, cell: float) -> int:
     )
 
 
-def read_outline(path: Path, projection: Projection) -> Any:
+def read_outline(
+    path: Path,
+    projection: Projection,
+    *,
+    layer: str | None = None,
+    where: dict[str, Any] | None = None,
+    told: str | None = None,
+) -> Any:
     """The union of the polygons and closed lines of a file, in the coordinates of the model.
 
     Args:
         path: GIS file, see `read_features`.
         projection: Projection of the model.
+        layer: Name of the layer; needed if there are several.
+        where: Use only features with these properties.
+        told: Projection of the file; overrides its own.
 
     Raises:
         CaseError: The file cannot be read, or contains no area.
     """
     shapely = extra("shapely", WHAT)
-    found = read_features(path)
+    found = read_features(path, layer, where)
     with reading(path, CaseError, "an outline is a polygon or a closed line"):
         shapes = [shapely.geometry.shape(geometry) for geometry, _ in found.items]
         areas = [area for shape in shapes for area in _areas(shapely.force_2d(shape))]
@@ -155,7 +165,7 @@ def read_outline(path: Path, projection: Projection) -> Any:
         raise CaseError(f"{path}: contains no polygon or closed line; an outline is one of them")
     outline = shapely.union_all(shapely.make_valid(np.array(areas)))
     return shapely.transform(
-        outline, lambda points: projection.bring(path, found.label, None, points)
+        outline, lambda points: projection.bring(path, found.label, told, points)
     )
 
 

@@ -182,6 +182,7 @@ class RunOut:
                 "cell": d.cell,
                 "volume": d.volume,
                 "area": d.area,
+                "length": d.length(self.direction),
                 "thickness_mean": d.volume / d.area,
                 "thickness_most": float(d.thickness.max()),
             },

@@ -27,7 +27,7 @@ def test_scores_table_and_picture(run_cli, folder):
     assert out.endswith("compare/prisms.csv\ncube.results/compare/prisms.json\n"
                         "cube.results/compare/prisms.png\n")  # fmt: skip
     told = json.loads(Path("cube.results/compare/prisms.json").read_text())
-    assert told["scores"]["dz"]["skill"] > 0.99  # it falls by 5 t^2
+    assert told["scores"]["dz"]["skill"] > 0.95  # it falls by 5 t^2; frames are 1 ms apart
     assert told["scores"]["all"]["count"] == 4
     rows = Path("cube.results/compare/prisms.csv").read_text().splitlines()
     assert rows[0].startswith("name,x [m],y [m],z [m],time [s],monitored_dx [m]")
