@@ -76,8 +76,16 @@ def test_json_and_the_folder_of_the_user(run_cli, folder):
     [
         ("study: study.yaml", "study: none.yaml", "none.yaml: "),
         ("observed", "sweep: other\nobserved", "other: holds no sweep; run cdem sweep"),
-        ("result: fall", "result: fell", "fit.yaml:4:.*no column fell in the table of the study; it has:.* fall"),
-        ("{result: fall, value: -4.5", "{runout: reach, value: 4", "write keep: true in study.yaml"),
+        (
+            "result: fall",
+            "result: fell",
+            "fit.yaml:4:.*no column fell in the table of the study; it has:.* fall",
+        ),
+        (
+            "{result: fall, value: -4.5",
+            "{runout: reach, value: 4",
+            "write keep: true in study.yaml",
+        ),
         ("deviation: 0.1", "deviation: 0.1, x: 1", "fit.yaml:4:.*x: unknown key"),
         ("[{result: fall, value: -4.5, deviation: 0.1}]", "[]", "at least 1 entry"),
         ("fit: 1", "fit: 2", "must be 1"),
@@ -89,6 +97,13 @@ def test_a_mistake_is_one_message(run_cli, folder, old, new, message):
     assert status == 1 and not out
     assert len(err.strip().splitlines()) == 1
     assert re.search(message, err)
+
+
+def test_an_empty_file_is_one_message(run_cli, folder):
+    Path("fit.yaml").write_text("")
+    assert (
+        run_cli("fit", "fit.yaml")[2] == "fit.yaml: the file is empty; see docs/observations.md\n"
+    )
 
 
 def test_too_few_runs_are_told_with_their_number(run_cli, folder):

@@ -68,7 +68,16 @@ def test_weights_give_back_the_place_inside_every_shape():
         ),
         (
             pyvista.CellType.HEXAHEDRON,
-            [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]],
+            [
+                [0, 0, 0],
+                [1, 0, 0],
+                [1, 1, 0],
+                [0, 1, 0],
+                [0, 0, 1],
+                [1, 0, 1],
+                [1, 1, 1],
+                [0, 1, 1],
+            ],
         ),
     ]
     for kind, corners in shapes:

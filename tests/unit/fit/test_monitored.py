@@ -18,7 +18,9 @@ def table(tmp_path):
 
 
 def test_components_units_and_deviations(table):
-    path = table("Point;Easting;Northing;Height;dE [mm];dN [mm];dU [cm];sU [mm]\nA;1,5;2;3;4;-5;0,6;2\n")
+    path = table(
+        "Point;Easting;Northing;Height;dE [mm];dN [mm];dU [cm];sU [mm]\nA;1,5;2;3;4;-5;0,6;2\n"
+    )
     found = read_monitored(path)
     assert found.names == ["A"] and found.at.tolist() == [[1.5, 2, 3]]
     assert found.moved[0, :3] == pytest.approx([0.004, -0.005, 0.006])

@@ -21,7 +21,9 @@ class Line:
 
 def likelihood(matrix, values, deviation, variance=0.0) -> Likelihood:
     values = np.asarray(values, float)
-    return Likelihood(Line(np.asarray(matrix), variance), values, deviation**2 * np.eye(len(values)))
+    return Likelihood(
+        Line(np.asarray(matrix), variance), values, deviation**2 * np.eye(len(values))
+    )
 
 
 def test_one_parameter_and_one_value_give_a_normal_distribution():
