@@ -25,11 +25,8 @@ STARTS = {
     "case": "'cdem new incline' writes one to start from",
     "study": "see docs/sweep.md",
     "distribution": "see docs/screening.md",
-<<<<<<< HEAD
     "rockfall": "'cdem new rockfall_runs' writes one to start from",
-=======
     "fit": "see docs/observations.md",
->>>>>>> f24d1eeb (Empty fit files are told where to look)
 }
 """Where to look for the content of an empty file, for each kind of file."""
 
