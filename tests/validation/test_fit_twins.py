@@ -10,10 +10,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from cdem.fit.emulator import Emulator
-from cdem.fit.find import find
+from cdem.fit.find import emulate, find, together
 from cdem.fit.observed import Observed
-from cdem.fit.posterior import Likelihood, sample
+from cdem.fit.posterior import sample
 from cdem.fit.priors import Prior
 from cdem.fit.runs import Runs
 from cdem.study.sampling import draw
@@ -49,17 +48,15 @@ def runs() -> Runs:
 
 def test_hidden_frictions_lie_in_the_band_in_15_to_20_of_20_trials(runs):
     random = np.random.default_rng(11)
-    emulators = [Emulator(runs.places, values, seed=1) for values in runs.results]
+    whole, _ = emulate(runs, seed=1)
     hits, widths = np.zeros(2), np.zeros(2)
     for trial in range(TRIALS):
         hidden = LOW + (HIGH - LOW) * random.random(2)
         noisy = [
-            Likelihood(emulator, np.array([value + d * random.standard_normal()]), np.eye(1) * d**2)
-            for emulator, value, d in zip(
-                emulators, slide(*hidden), DEVIATIONS.values(), strict=True
-            )
+            replace(one, values=np.array([value + one.deviation * random.standard_normal()]))
+            for one, value in zip(runs.observed, slide(*hidden), strict=True)
         ]
-        places = sample(noisy, 2, seed=trial).places
+        places = sample(together(whole, noisy), 2, seed=trial).places
         samples = np.column_stack([p.value(places[:, k]) for k, p in enumerate(runs.priors)])
         low, high = np.quantile(samples, (0.05, 0.95), axis=0)
         hits += (low <= hidden) & (hidden <= high)

@@ -19,7 +19,7 @@ Floats = NDArray[np.float64]
 
 KEPT = 0.999
 """Share of the variance of a result over the runs that its principal components keep."""
-MOST_COMPONENTS = 8
+MOST_COMPONENTS = 12
 RESTARTS = 2
 LENGTHS = (0.05, 20.0)
 """Bounds of the lengths of correlation, in units of the range of a parameter."""
@@ -96,6 +96,17 @@ class Emulator:
         """The result at some parameters, shape (points, size)."""
         return self.mean + self.scores(places)[0] @ self.basis
 
+    def part(self, columns: slice, scale: float) -> Part:
+        """Some columns of the result, times a number."""
+        left_out = self.left_out()
+        return Part(
+            self,
+            self.mean[columns] * scale,
+            self.basis[:, columns] * scale,
+            self.rest[columns] * scale**2,
+            LeftOut(left_out.error[:, columns] * scale, left_out.deviation[:, columns] * scale),
+        )
+
     def left_out(self) -> LeftOut:
         """Leave-one-out prediction of each run (Rasmussen & Williams 2006, Eq. 5.12).
 
@@ -110,6 +121,31 @@ class Emulator:
         found = self.mean + (scores * self._scale) @ self.basis
         spread = (variances * self._scale**2) @ self.basis**2 + self.rest
         return LeftOut(found - self._results, np.sqrt(spread))
+
+
+@dataclass
+class Part:
+    """A part of a result, with the scores of the whole.
+
+    Attributes:
+        whole: Emulator of the whole.
+        mean, basis, rest: As in `Emulator`.
+        left_out: Prediction of each run from all others.
+    """
+
+    whole: Emulator
+    mean: Floats
+    basis: Floats
+    rest: Floats
+    left_out: LeftOut
+
+    def scores(self, places: Floats) -> tuple[Floats, Floats]:
+        """As `Emulator.scores`."""
+        return self.whole.scores(places)
+
+    def at(self, places: Floats) -> Floats:
+        """The part at some parameters, shape (points, size)."""
+        return self.mean + self.scores(places)[0] @ self.basis
 
 
 def _components(results: Floats) -> tuple[Floats, Floats]:

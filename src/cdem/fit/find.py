@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from cdem.fit.emulator import Emulator, LeftOut, missing
+from cdem.fit.emulator import Emulator, Part, missing
+from cdem.fit.observed import Observed
 from cdem.fit.posterior import Likelihood, Posterior, sample
 from cdem.fit.runs import Runs
 
@@ -30,16 +33,16 @@ class Found:
 
     Attributes:
         runs: The runs and the observations.
-        emulators: One for each observation.
-        left_out: Errors of their predictions of runs that are left out.
+        emulators: The part of each observation in the emulator of all.
         posterior: Parameters that agree with the observations.
+        misfits: Squared misfit of each observation at the best parameters.
         notes: Messages for the user.
     """
 
     runs: Runs
-    emulators: list[Emulator]
-    left_out: list[LeftOut]
+    emulators: list[Part]
     posterior: Posterior
+    misfits: list[float]
     notes: list[str] = field(default_factory=list)
 
     @property
@@ -58,7 +61,7 @@ class Found:
         from scipy.stats import chi2
 
         sizes = [len(one.values) for one in self.runs.observed]
-        pairs = zip(self.posterior.misfits, sizes, strict=True)
+        pairs = zip(self.misfits, sizes, strict=True)
         return [float(chi2.sf(misfit, size)) for misfit, size in pairs]
 
 
@@ -73,16 +76,40 @@ def find(runs: Runs, seed: int) -> Found:
         BackendError: scikit-learn is not installed.
     """
     with _one_thread():  # small matrices: more threads would wait for one another
-        emulators = [Emulator(runs.places, values, seed) for values in runs.results]
-        likelihoods = [
-            Likelihood(emulator, one.values, one.covariance)
-            for emulator, one in zip(emulators, runs.observed, strict=True)
+        whole, parts = emulate(runs, seed)
+        observed = [
+            Likelihood(part, one.values, one.covariance)
+            for part, one in zip(parts, runs.observed, strict=True)
         ]
-        posterior = sample(likelihoods, len(runs.priors), seed)
-        errors = [emulator.left_out() for emulator in emulators]
-    found = Found(runs, emulators, errors, posterior, list(runs.notes))
+        posterior = sample(together(whole, runs.observed), len(runs.priors), seed)
+        misfits = [one.misfit(posterior.best) for one in observed]
+    found = Found(runs, parts, posterior, misfits, list(runs.notes))
     found.notes += doubts(found)
     return found
+
+
+def emulate(runs: Runs, seed: int) -> tuple[Emulator, list[Part]]:
+    """An emulator of all observations together, each over its deviation, and the part of each.
+
+    A run that runs farther than its neighbours by chance does so in all its observations. Components
+    of all together carry this: errors of one component are alike in all observations.
+    """
+    deviations = [one.deviation for one in runs.observed]
+    pairs = zip(runs.results, deviations, strict=True)
+    whole = Emulator(runs.places, np.hstack([values / d for values, d in pairs]), seed)
+    ends = np.cumsum([0, *(len(one.values) for one in runs.observed)]).tolist()
+    columns = [slice(a, b) for a, b in pairwise(ends)]
+    return whole, [whole.part(c, d) for c, d in zip(columns, deviations, strict=True)]
+
+
+def together(whole: Emulator, observed: Sequence[Observed]) -> Likelihood:
+    """Agreement with all observations, whose own errors are independent of one another."""
+    ends = np.cumsum([0, *(len(one.values) for one in observed)]).tolist()
+    covariance = np.zeros((ends[-1], ends[-1]))
+    for one, (a, b) in zip(observed, pairwise(ends), strict=True):
+        covariance[a:b, a:b] = one.covariance / one.deviation**2
+    values = np.concatenate([one.values / one.deviation for one in observed])
+    return Likelihood(whole, values, covariance)
 
 
 def _one_thread() -> Any:
@@ -97,8 +124,9 @@ def _one_thread() -> Any:
 def doubts(found: Found) -> list[str]:
     """Notes about a fit that should not be believed."""
     notes = []
-    trio = zip(found.runs.observed, found.left_out, found.chances, strict=True)
-    for one, left_out, chance in trio:
+    trio = zip(found.runs.observed, found.emulators, found.chances, strict=True)
+    for one, part, chance in trio:
+        left_out = part.left_out
         unit = f" {one.unit}" if one.unit else ""
         if left_out.rms > one.deviation:
             notes.append(

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from cdem.fit.emulator import Emulator
+from cdem.fit.emulator import Emulator, Part
 
 Floats = NDArray[np.float64]
 
@@ -34,9 +34,13 @@ class Likelihood:
         covariance: Covariance of the observation and the model, shape (size, size).
     """
 
-    emulator: Emulator
+    emulator: Emulator | Part
     values: Floats
     covariance: Floats
+
+    def misfit(self, place: Floats) -> float:
+        """Squared misfit at some parameters, chi squared with as many degrees as there are values."""
+        return float(self.prepared().at(place[None])[1][0])
 
     def prepared(self) -> _Whitened:
         """The same in coordinates in which the covariance is the unit matrix."""
@@ -57,7 +61,7 @@ class _Whitened:
         gap: Observed values less the mean of the runs, shape (size,).
     """
 
-    emulator: Emulator
+    emulator: Emulator | Part
     basis: Floats
     gap: Floats
 
@@ -86,33 +90,27 @@ class Posterior:
     Attributes:
         places: Parameters in units of their priors, shape (samples, parameters).
         best: The most likely of them, shape (parameters,).
-        misfits: Squared misfit of each observation at the best.
         mixing: Ratio of the variance over all walks to the variance within a walk, by parameter: the
             root is Gelman and Rubin's R, near 1 where the walks agree.
     """
 
     places: Floats
     best: Floats
-    misfits: list[float]
     mixing: Floats
 
 
-def sample(likelihoods: list[Likelihood], parameters: int, seed: int) -> Posterior:
+def sample(likelihood: Likelihood, parameters: int, seed: int) -> Posterior:
     """Sample the parameters by many walks after Metropolis, from starts drawn by their likelihood.
 
     Args:
-        likelihoods: One for each observation; the observations are independent of one another.
+        likelihood: Agreement with all observations.
         parameters: Number of parameters.
         seed: Seed of the walks: equal seeds give equal samples.
     """
     random = np.random.default_rng(seed)
-    parts = [one.prepared() for one in likelihoods]
-
-    def log_of(places: Floats) -> Floats:
-        return sum((part.at(places)[0] for part in parts), np.zeros(len(places)))
-
+    whole = likelihood.prepared()
     first = random.random((FIRST, parameters))
-    logs = log_of(first)
+    logs = whole.at(first)[0]
     weights = np.exp(logs - logs.max())
     start = random.choice(FIRST, WALKS, p=weights / weights.sum())
     here, log_here = first[start], logs[start]
@@ -126,7 +124,7 @@ def sample(likelihoods: list[Likelihood], parameters: int, seed: int) -> Posteri
         anywhere = random.random(WALKS) < SHARE
         there = np.where(anywhere[:, None], random.random(here.shape), here + jump)
         inside = ((there >= 0) & (there <= 1)).all(axis=1)
-        log_there = np.where(inside, log_of(np.clip(there, 0, 1)), -np.inf)
+        log_there = np.where(inside, whole.at(np.clip(there, 0, 1))[0], -np.inf)
         take = np.log(random.random(WALKS)) < log_there - log_here
         here = np.where(take[:, None], there, here)
         log_here = np.where(take, log_there, log_here)
@@ -134,10 +132,8 @@ def sample(likelihoods: list[Likelihood], parameters: int, seed: int) -> Posteri
     walks = np.array(kept[WARM:])
     places = walks.reshape(-1, parameters)
     candidates = np.concatenate([first[np.argmax(logs)][None], places])
-    logs = log_of(candidates)
-    best = candidates[int(np.argmax(logs))]
-    misfits = [float(part.at(best[None])[1][0]) for part in parts]
-    return Posterior(places, best, misfits, _mixing(walks))
+    best = candidates[int(np.argmax(whole.at(candidates)[0]))]
+    return Posterior(places, best, _mixing(walks))
 
 
 def _variance(places: Floats, weights: Floats) -> Floats:

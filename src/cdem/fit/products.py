@@ -34,6 +34,7 @@ def facts(found: Found, title: str = "") -> dict[str, Any]:
     return {
         "title": title,
         "runs": len(found.runs.used),
+        "components": found.emulators[0].basis.shape[0],
         "parameters": {
             one.name: {
                 "low": float(bands[k, 0]),
@@ -54,19 +55,13 @@ def facts(found: Found, title: str = "") -> dict[str, Any]:
                 "name": one.name,
                 "values": len(one.values),
                 "deviation": one.deviation,
-                "left_out_rms": left_out.rms,
-                "left_out_in_90_band": left_out.inside,
-                "components": len(emulator.basis),
+                "left_out_rms": part.left_out.rms,
+                "left_out_in_90_band": part.left_out.inside,
                 "misfit": misfit,
                 "chance": chance,
             }
-            for one, left_out, emulator, misfit, chance in zip(
-                found.runs.observed,
-                found.left_out,
-                found.emulators,
-                found.posterior.misfits,
-                found.chances,
-                strict=True,
+            for one, part, misfit, chance in zip(
+                found.runs.observed, found.emulators, found.misfits, found.chances, strict=True
             )
         ],
         "notes": found.notes,

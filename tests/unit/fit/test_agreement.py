@@ -135,5 +135,5 @@ def test_a_line_of_sight_and_its_direction_belong_together(run, moved, los, mess
 
 
 def test_nothing_to_compare_is_one_clear_error(run):
-    with pytest.raises(CdemError, match="nothing to compare with .* lie outside of the model"):
+    with pytest.raises(CdemError, match=r"nothing to compare with .* lie outside of the model"):
         compare(run, monitored([[99, 1, np.nan]], [[1, 0, 0, np.nan]]))
