@@ -44,7 +44,7 @@ class Likelihood:
 
     def prepared(self) -> _Whitened:
         """The same in coordinates in which the covariance is the unit matrix."""
-        whole = self.covariance + np.diag(self.emulator.rest)
+        whole = self.covariance + self.emulator.rest
         root = np.linalg.cholesky(whole + 1e-10 * np.trace(whole) / len(whole) * np.eye(len(whole)))
         basis = np.asarray(np.linalg.solve(root, self.emulator.basis.T), np.float64)
         gap = np.asarray(np.linalg.solve(root, self.values - self.emulator.mean), np.float64)

@@ -12,7 +12,7 @@ class Line:
     def __init__(self, matrix: np.ndarray, variance: float = 0.0) -> None:
         self.basis = np.asarray(matrix, float).T
         self.mean = np.zeros(self.basis.shape[1])
-        self.rest = np.zeros(self.basis.shape[1])
+        self.rest = np.zeros((self.basis.shape[1],) * 2)
         self.variance = variance
 
     def scores(self, places):
