@@ -15,8 +15,8 @@ FAULTS = [
         "emulators without errors",
         "the variance of the prediction does not count",
         "src/cdem/fit/posterior.py",
-        "mean, variance = self.emulator.scores(places)",
-        "mean, variance = self.emulator.scores(places)[0], np.zeros_like(places[:, :1])",
+        "whole = own + variance[:, :, None] * np.eye(len(seen))",
+        "whole = own + 0 * variance[:, :, None]",
         "tests/unit/fit/test_posterior.py",
     ),
     Mutant(

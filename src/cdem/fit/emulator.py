@@ -19,9 +19,9 @@ Floats = NDArray[np.float64]
 
 KEPT = 0.999
 """Share of the variance of a result over the runs that its principal components keep."""
-MOST_COMPONENTS = 12
+MOST_COMPONENTS = 8
 RESTARTS = 2
-LENGTHS = (0.05, 20.0)
+LENGTHS = (0.2, 20.0)
 """Bounds of the lengths of correlation, in units of the range of a parameter."""
 NOISE = (1e-8, 1.0)
 """Bounds of the variance of the scatter from run to run, over the variance of a component."""
@@ -61,7 +61,7 @@ class Emulator:
     Attributes:
         mean: Mean result over the runs, shape (size,).
         basis: Principal components, shape (components, size).
-        rest: Covariance over the runs of what the components leave, shape (size, size).
+        rest: Variance over the runs of what the components leave, shape (size,).
 
     Raises:
         BackendError: scikit-learn is not installed.
@@ -72,7 +72,7 @@ class Emulator:
         self._results = results
         scores, self.basis = _components(results - self.mean)
         left = results - self.mean - scores @ self.basis
-        self.rest = left.T @ left / max(1, len(results) - 1)
+        self.rest = (left**2).sum(axis=0) / max(1, len(results) - 1)
         self._scale = scores.std(axis=0)
         self._scores = scores / self._scale
         self._processes = [_process(places, column, seed) for column in self._scores.T]
@@ -103,7 +103,7 @@ class Emulator:
             self,
             self.mean[columns] * scale,
             self.basis[:, columns] * scale,
-            self.rest[columns, columns] * scale**2,
+            self.rest[columns] * scale**2,
             LeftOut(left_out.error[:, columns] * scale, left_out.deviation[:, columns] * scale),
         )
 
@@ -119,7 +119,7 @@ class Emulator:
             variances[:, k] = 1 / np.diag(inverse)
             scores[:, k] = self._scores[:, k] - (inverse @ self._scores[:, k]) * variances[:, k]
         found = self.mean + (scores * self._scale) @ self.basis
-        spread = (variances * self._scale**2) @ self.basis**2 + np.diag(self.rest)
+        spread = (variances * self._scale**2) @ self.basis**2 + self.rest
         return LeftOut(found - self._results, np.sqrt(spread))
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,7 +27,8 @@ SHARE = 0.05
 class Likelihood:
     """How well an observation agrees with some parameters.
 
-    Normal, with the covariance of the observation plus the variance of the emulator.
+    Normal errors of the scores of the components: those of the observation and those of the emulator.
+    Parts of an observation that no component describes say nothing about the parameters.
 
     Attributes:
         emulator: The result as a function of the parameters.
@@ -38,49 +40,34 @@ class Likelihood:
     values: Floats
     covariance: Floats
 
-    def misfit(self, place: Floats) -> float:
-        """Squared misfit at some parameters, chi squared with as many degrees as there are values."""
-        return float(self.prepared().at(place[None])[1][0])
-
-    def prepared(self) -> _Whitened:
-        """The same in coordinates in which the covariance is the unit matrix."""
-        whole = self.covariance + self.emulator.rest
-        root = np.linalg.cholesky(whole + 1e-10 * np.trace(whole) / len(whole) * np.eye(len(whole)))
-        basis = np.asarray(np.linalg.solve(root, self.emulator.basis.T), np.float64)
-        gap = np.asarray(np.linalg.solve(root, self.values - self.emulator.mean), np.float64)
-        return _Whitened(self.emulator, basis, gap)
-
-
-@dataclass(frozen=True)
-class _Whitened:
-    """A likelihood with a unit covariance.
-
-    Attributes:
-        emulator: Gives scores of the components.
-        basis: The components, shape (size, components).
-        gap: Observed values less the mean of the runs, shape (size,).
-    """
-
-    emulator: Emulator | Part
-    basis: Floats
-    gap: Floats
-
-    def at(self, places: Floats) -> tuple[Floats, Floats]:
-        """Logarithm of the likelihood and the squared misfit, each of shape (points,).
-
-        The misfit is chi squared with as many degrees of freedom as the observation has values.
-        """
+    def at(self, places: Floats) -> Floats:
+        """Logarithm of the likelihood at some parameters, shape (points,)."""
         mean, variance = self.emulator.scores(places)
-        left = self.gap - mean @ self.basis.T
-        if not self.basis.shape[1]:
-            misfit = np.full(len(places), float(self.gap @ self.gap))
-            return -0.5 * misfit, misfit
-        # (I + B V B^T)^-1 by the identity of Woodbury, one small system a point
-        inner = np.eye(self.basis.shape[1]) + (self.basis.T @ self.basis)[None] * variance[:, None]
-        seen = left @ self.basis
-        solved = np.linalg.solve(inner.transpose(0, 2, 1), seen[..., None])[..., 0]
-        misfit = (left**2).sum(axis=1) - (seen * variance * solved).sum(axis=1)
-        return -0.5 * (misfit + np.linalg.slogdet(inner)[1]), misfit
+        if not mean.shape[1]:
+            return np.zeros(len(places))
+        seen, own = self._seen
+        left = seen - mean
+        whole = own + variance[:, :, None] * np.eye(len(seen))
+        solved = np.linalg.solve(whole, left[..., None])[..., 0]
+        return -0.5 * ((left * solved).sum(axis=1) + np.linalg.slogdet(whole)[1])
+
+    @cached_property
+    def _seen(self) -> tuple[Floats, Floats]:
+        """Scores of the observation, shape (components,), and their covariance."""
+        project: Floats = np.asarray(np.linalg.pinv(self.emulator.basis.T), np.float64)
+        return project @ (self.values - self.emulator.mean), project @ self.covariance @ project.T
+
+    def misfit(self, place: Floats) -> float:
+        """Squared misfit of the values, chi squared with as many degrees as there are values.
+
+        Args:
+            place: Parameters, shape (parameters,).
+        """
+        mean, variance = (one[0] for one in self.emulator.scores(place[None]))
+        basis = self.emulator.basis
+        whole = self.covariance + (basis.T * variance) @ basis + np.diag(self.emulator.rest)
+        left = self.values - self.emulator.mean - mean @ basis
+        return float(left @ np.linalg.solve(whole, left))
 
 
 @dataclass
@@ -108,9 +95,8 @@ def sample(likelihood: Likelihood, parameters: int, seed: int) -> Posterior:
         seed: Seed of the walks: equal seeds give equal samples.
     """
     random = np.random.default_rng(seed)
-    whole = likelihood.prepared()
     first = random.random((FIRST, parameters))
-    logs = whole.at(first)[0]
+    logs = likelihood.at(first)
     weights = np.exp(logs - logs.max())
     start = random.choice(FIRST, WALKS, p=weights / weights.sum())
     here, log_here = first[start], logs[start]
@@ -124,7 +110,7 @@ def sample(likelihood: Likelihood, parameters: int, seed: int) -> Posterior:
         anywhere = random.random(WALKS) < SHARE
         there = np.where(anywhere[:, None], random.random(here.shape), here + jump)
         inside = ((there >= 0) & (there <= 1)).all(axis=1)
-        log_there = np.where(inside, whole.at(np.clip(there, 0, 1))[0], -np.inf)
+        log_there = np.where(inside, likelihood.at(np.clip(there, 0, 1)), -np.inf)
         take = np.log(random.random(WALKS)) < log_there - log_here
         here = np.where(take[:, None], there, here)
         log_here = np.where(take, log_there, log_here)
@@ -132,7 +118,7 @@ def sample(likelihood: Likelihood, parameters: int, seed: int) -> Posterior:
     walks = np.array(kept[WARM:])
     places = walks.reshape(-1, parameters)
     candidates = np.concatenate([first[np.argmax(logs)][None], places])
-    best = candidates[int(np.argmax(whole.at(candidates)[0]))]
+    best = candidates[int(np.argmax(likelihood.at(candidates)))]
     return Posterior(places, best, _mixing(walks))
 
 
