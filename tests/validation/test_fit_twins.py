@@ -21,7 +21,6 @@ from cdem.study.schema import Parameter, Sampling
 G, SLIDE = 9.81, 60.0
 LOW, HIGH = np.array([8.0, 15.0]), np.array([22.0, 35.0])
 DEVIATIONS = {"travel": 2.0, "time": 0.2}
-TRIALS = 20
 
 
 def slide(p, q):
@@ -46,11 +45,14 @@ def runs() -> Runs:
     return Runs(priors, used, wanted, [travel[:, None], time[:, None]], [])
 
 
-def test_hidden_frictions_lie_in_the_band_in_15_to_20_of_20_trials(runs):
+@pytest.mark.parametrize(
+    ("trials", "least"), [(4, 2), pytest.param(20, 15, marks=pytest.mark.slow)]
+)
+def test_hidden_frictions_lie_in_their_bands(runs, trials, least):
     random = np.random.default_rng(11)
     whole, _ = emulate(runs, seed=1)
     hits, widths = np.zeros(2), np.zeros(2)
-    for trial in range(TRIALS):
+    for trial in range(trials):
         hidden = LOW + (HIGH - LOW) * random.random(2)
         noisy = [
             replace(one, values=np.array([value + one.deviation * random.standard_normal()]))
@@ -60,8 +62,8 @@ def test_hidden_frictions_lie_in_the_band_in_15_to_20_of_20_trials(runs):
         samples = np.column_stack([p.value(places[:, k]) for k, p in enumerate(runs.priors)])
         low, high = np.quantile(samples, (0.05, 0.95), axis=0)
         hits += (low <= hidden) & (hidden <= high)
-        widths += (high - low) / TRIALS
-    assert ((hits >= 15) & (hits <= 20)).all(), hits
+        widths += (high - low) / trials
+    assert (hits >= least).all(), hits
     # 90 % of a uniform distribution before
     assert (widths < 0.45 * 0.9 * (HIGH - LOW)).all(), widths
 
