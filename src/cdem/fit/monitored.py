@@ -87,30 +87,42 @@ def read_monitored(path: Path, unit: str | None = None, start: str | None = None
         raise CaseError(f"{path}: a table has its units in its headings, dx [mm]; leave --unit out")
     table = read_table(path, "table of displacements", lambda row: not _is_number(row[-1]))
     table.find(NAMES)
-    for key in "xy":
-        if key not in table.at:
-            raise CaseError(f"{path}: has no column {key}: the places of the points [m]")
-    measured = [key for key in COMPONENTS if key in table.at]
-    if not measured:
-        raise CaseError(
-            f"{path}: has no displacements; name their columns dx, dy, dz, or los, e.g. 'dz [mm]'"
-        )
+    _check_columns(table)
     count = len(table.rows)
     at = np.column_stack([_lengths(table, k) if k in table.at else _none(count) for k in "xyz"])
-    moved, deviation = np.full((count, 4), np.nan), np.full((count, 4), np.nan)
+    names = table.column("name") if "name" in table.at else [str(k + 1) for k in range(count)]
+    moved, deviation = _moved(table)
+    table.tell_unused(NAMES)
+    found = Monitored(path, names, at, _times(table, start), moved, deviation, table.notes)
+    if "date" in table.at and start is None and "time" not in table.at:
+        found = _changes(table, found)
+    return found
+
+
+def _check_columns(table: Table) -> None:
+    """A table needs places and displacements."""
+    for key in "xy":
+        if key not in table.at:
+            raise CaseError(f"{table.path}: has no column {key}: the places of the points [m]")
+    if not any(key in table.at for key in COMPONENTS):
+        raise CaseError(
+            f"{table.path}: has no displacements; name their columns dx, dy, dz, or los, e.g. "
+            "'dz [mm]'"
+        )
+
+
+def _moved(table: Table) -> tuple[Floats, Floats]:
+    """Displacements and their standard deviations [m], each of shape (rows, 4)."""
+    shape = (len(table.rows), len(COMPONENTS))
+    moved, deviation = np.full(shape, np.nan), np.full(shape, np.nan)
     for k, key in enumerate(COMPONENTS):
         if key in table.at:
             moved[:, k] = _lengths(table, key, gaps=True)
         if (s := "s" + key.removeprefix("d")) in table.at:
             deviation[:, k] = _lengths(table, s)
             if (deviation[:, k] <= 0).any():
-                raise CaseError(f"{path}: {table.name(s)} must be above 0 in every row")
-    names = table.column("name") if "name" in table.at else [str(k + 1) for k in range(count)]
-    table.tell_unused(NAMES)
-    found = Monitored(path, names, at, _times(table, start), moved, deviation, table.notes)
-    if "date" in table.at and start is None and "time" not in table.at:
-        found = _changes(table, found)
-    return found
+                raise CaseError(f"{table.path}: {table.name(s)} must be above 0 in every row")
+    return moved, deviation
 
 
 def _of_raster(path: Path, unit: str | None) -> Monitored:
