@@ -109,7 +109,7 @@ def test_a_number_of_the_run_out_is_named_by_its_path(fit_of):
         ({"outline": "a.gpkg"}, "deviation: is missing"),
         ({"result": "x", "value": 1, "deviation": 0}, "must be above 0"),
         ({"front": "f.csv", "deviation": "5 s"}, "deviation.*'5 s'"),
-        ({"outline": "a.gpkg", "deviation": 1, "lengt": 3}, "did you mean length"),
+        ({"outline": "a.gpkg", "deviation": 1, "lengths": 3}, "did you mean length"),
         ({"outline": "none.gpkg", "deviation": 1}, "none.gpkg"),
     ],
 )
