@@ -167,7 +167,7 @@ def test_acceleration_over_a_slightly_uneven_bed(monkeypatch):
 
     flat = build.read_model
 
-    def uneven(case):
+    def uneven(case, more):
         model = flat(case)
         bed = np.unique(model.cells["tet4"])
         top = bed[np.abs(model.points[bed, 2]) < 1e-9]
@@ -261,7 +261,7 @@ def test_ridge_that_steepens_holds_a_bar(monkeypatch):
 
     flat = build.read_model
 
-    def ridge(case):
+    def ridge(case, more):
         model = flat(case)
         bed = np.unique(model.cells["tet4"])
         top = bed[np.abs(model.points[bed, 2]) < 1e-9]

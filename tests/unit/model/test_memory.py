@@ -123,7 +123,7 @@ def test_a_limit_of_the_process_is_known(tmp_path):
 
 
 def test_memory_that_runs_out_is_one_line(run_cli, cube_folder, monkeypatch):
-    def full(case):
+    def full(case, more):
         raise MemoryError("Unable to allocate 9 GiB")
 
     monkeypatch.setattr("cdem.run.state.build", full)

@@ -8,7 +8,7 @@ import pytest
 from scipy.optimize import fsolve
 
 from cdem.case.case import Case
-from cdem.screening.sliding import on_two
+from cdem.screening.sliding import factors, on_two
 from cdem.verification.goodman_bray import problem as goodman_bray
 from cdem.verification.slopes import planes, problem, wedges
 from cdem.verification.slopes.finer import finer, stiffer
@@ -88,11 +88,14 @@ def test_wedge_by_the_vectors_of_screening(second):
     slides = on_two(
         *(SimpleNamespace(normal=p.normal, tangent=planes.tan(p.friction)) for p in joints)
     )
-    held = sum(p.cohesion * area for p, area in zip(joints, wedge.areas, strict=True))
     assert slides.kind == "both"
-    assert wedge.factor() == pytest.approx(
-        slides.factor(wedges.UNIT * wedge.volume, held), rel=1e-9
+    found, _ = factors(
+        np.array([p.normal for p in joints]),
+        np.array([planes.tan(p.friction) for p in joints]),
+        np.array([p.cohesion * area for p, area in zip(joints, wedge.areas, strict=True)]),
+        np.array([0.0, 0.0, -wedges.UNIT * wedge.volume]),
     )
+    assert wedge.factor() == pytest.approx(float(found), rel=1e-9)
 
 
 def test_water_in_a_wedge_by_integration():
