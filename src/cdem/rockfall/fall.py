@@ -27,7 +27,7 @@ from cdem.run.simulation import Simulation
 Floats = NDArray[np.float64]
 GRAVITY = 9.81
 BLOCK = "block"
-CELLS, SIZES = 10.0, 10.0
+CELLS, SIZES = 8.0, 10.0
 """Least width of a window, in cells and in radii of the block."""
 FREE = 0.01
 """Change of velocity between two samples, less that of free fall, up to which a block flies: part of
