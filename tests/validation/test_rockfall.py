@@ -10,7 +10,7 @@ import pytest
 
 from cdem.case.case import Case
 from cdem.mesh.primitives import outward_faces, polyhedron
-from cdem.rockfall.fall import Boulder, Physics, case_of, fall
+from cdem.rockfall.fall import Boulder, Physics, _Run, case_of, fall
 from cdem.rockfall.ground import Ground
 from cdem.rockfall.rigid import RigidBlock
 from cdem.rockfall.tracks import Track, passages
@@ -100,13 +100,15 @@ def test_a_run_is_that_of_the_same_case_by_hand(tmp_path):
     ground = Ground(0.0, 0.0, np.array([2.0, 2.0]), z, np.zeros((20, len(x) - 1), np.int16))
     corners = BOX @ np.diag([1.0, 0.7, 0.5]) + [20.0, 20.0, 1.5]
     rules = physics(1e8, 30.0, 0.4, 0.6)
-    run = fall(ground, Boulder(corners, np.array([1.0, 0.5, 0])), rules)
+    boulder = Boulder(corners, np.array([1.0, 0.5, 0]))
+    run = fall(ground, boulder, rules)
     assert run.windows == 1
     assert run.samples[:, 5].min() < 0.45  # it has met the ground
 
     mesh = polyhedron("block", corners)
     block = RigidBlock(mesh.points, mesh.cells["tet4"], 2600.0)
-    window, _ = ground.window(np.array([14.8, 12.4]), np.array([34.8, 32.4]))
+    start = block.motion(mesh.points, np.tile(boulder.velocity, (len(mesh.points), 1)))
+    window, _ = ground.window(*_Run(ground, boulder, rules, 1e8)._edges(start))
     wedges = [("wedge", window.cells["wedge6"])]
     physical = [np.ones(len(window.cells["wedge6"]), int)]
     meshio.gmsh.write(
