@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from cdem.cli.options import print_paths
+from cdem.cli.options import print_paths, reporting
 from cdem.errors import CdemError
 
 if TYPE_CHECKING:
@@ -104,12 +104,10 @@ def fit(
     from cdem.fit.find import find
     from cdem.fit.fitting import Fit
     from cdem.fit.runs import runs_of
-    from cdem.run.progress import line
 
     what = Fit.load(file)
-    tty = sys.stderr.isatty()
-    with line(silent=not tty, tty=tty) as show:
-        runs = runs_of(what, None if show is None else lambda words, part: show("", words, part))
+    with reporting() as report:
+        runs = runs_of(what, report)
     found = find(runs, what.seed)
     folder = output or Path(f"{file.stem}.fit")
     folder.mkdir(parents=True, exist_ok=True)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import signal
 import sys
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from types import FrameType
@@ -100,3 +100,38 @@ def stop_on_signal(kept: str = "stopping with a checkpoint") -> Iterator[list[st
     finally:
         for number, handler in before.items():
             signal.signal(number, handler)
+
+
+@contextmanager
+def reporting() -> Iterator[Callable[[str, float], None] | None]:
+    """A line of progress on a terminal: a function of a text and the share done, or None."""
+    from cdem.run.progress import line
+
+    tty = sys.stderr.isatty()
+    with line(silent=not tty, tty=tty) as show:
+        yield None if show is None else lambda words, part: show("", words, part)
+
+
+@contextmanager
+def executing(
+    kept: str, *, silent: bool = False, as_json: bool = False
+) -> Iterator[dict[str, Callable[..., Any] | None]]:
+    """Arguments `progress` and `should_stop` of functions that execute many runs.
+
+    Args:
+        kept: Message when a signal comes.
+        silent: Whether there is no progress.
+        as_json: Whether only a terminal gets it.
+    """
+    from cdem.run.progress import line
+    from cdem.study.sweep import describe
+
+    tty = sys.stderr.isatty()
+    with (
+        stop_on_signal(kept) as stop,
+        line(silent=silent or (as_json and not tty), tty=tty) as show,
+    ):
+        tell = None
+        if show is not None:
+            tell = lambda p: show(str(p.finished == p.total), *describe(p))  # noqa: E731
+        yield {"progress": tell, "should_stop": lambda: bool(stop)}

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from cdem.cli.options import STOPPED, AsJson, Overwrite, Settings, print_paths, stop_on_signal
+from cdem.cli.options import STOPPED, AsJson, Overwrite, Settings, executing, print_paths
 from cdem.errors import BackendError, CdemError
 
 if TYPE_CHECKING:
@@ -92,23 +92,10 @@ def _execute(
 ) -> Runs:
     """Execute the runs that are left, with a line of progress."""
     from cdem.rockfall.run import run_rockfall
-    from cdem.run.progress import line
-    from cdem.study.sweep import SweepProgress, describe
 
-    tty = sys.stderr.isatty()
-    with (
-        stop_on_signal("stopping, finished runs are kept") as stop,
-        line(silent=silent or (as_json and not tty), tty=tty) as show,
-    ):
-
-        def tell(p: SweepProgress) -> None:
-            if show is not None:
-                show(str(p.finished == p.total), *describe(p))
-
-        return run_rockfall(
-            given, folder, workers=workers, scheduler=scheduler, progress=tell,
-            should_stop=lambda: bool(stop),
-        )  # fmt: skip
+    kept = "stopping, finished runs are kept"
+    with executing(kept, silent=silent, as_json=as_json) as how:
+        return run_rockfall(given, folder, workers=workers, scheduler=scheduler, **how)
 
 
 def _write(result: Result, folder: Path) -> list[Path]:

@@ -4,15 +4,14 @@ from __future__ import annotations
 
 import json
 import sys
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from cdem.cli import screening_options as options
-from cdem.cli.options import Force, Overwrite, print_paths, stop_on_signal
+from cdem.cli.options import Force, Overwrite, executing, print_paths, reporting
 from cdem.errors import CaseError, CdemError
 
 GRAVITY = 9.81
@@ -174,12 +173,9 @@ def _extract(
     from cdem.outcrop.extraction import extract
     from cdem.outcrop.facet_table import write_facets
     from cdem.outcrop.survey import OutcropSurvey
-    from cdem.run.progress import line
 
     read = read_outcrop(cloud)
-    tty = sys.stderr.isatty()
-    with line(silent=not tty, tty=tty) as show:
-        report = None if show is None else lambda words, part: show("", words, part)
+    with reporting() as report:
         try:
             found = extract(read.points, **sizes, tell=report)
         except CaseError as error:
@@ -296,20 +292,10 @@ def _screen(
     from cdem.screening import fos_map
     from cdem.screening.bodies import Ground
 
-    with _progress() as report:
+    with reporting() as report:
         return fos_map.screen(
             Ground(grid), planes, limits, stride, report, loads=loads, yields=shaken
         )
-
-
-@contextmanager
-def _progress() -> Iterator[Callable[[str, float], None] | None]:
-    """A line of progress on a terminal."""
-    from cdem.run.progress import line
-
-    tty = sys.stderr.isatty()
-    with line(silent=not tty, tty=tty) as show:
-        yield None if show is None else lambda words, part: show("", words, part)
 
 
 class _Results:
@@ -366,7 +352,7 @@ class _Results:
         from cdem.screening.probability import evaluate
 
         how = {"stride": stride, "workers": workers or cores()}
-        with _progress() as show:
+        with reporting() as show:
             chance = evaluate(self.found, self.planes, uncertain, columns, report=show, **how)
         self.chance = chance
         self._print(report.chance_text(chance))
@@ -442,24 +428,13 @@ def _confirm(
     """Compute the worst bodies, with a line of progress."""
     if not count or not found.bodies:
         return []
-    from cdem.run.progress import line
     from cdem.screening.confirm import confirm
-    from cdem.study.sweep import describe
 
-    tty = sys.stderr.isatty()
-    with (
-        stop_on_signal("stopping, finished bodies are kept") as stop,
-        line(silent=not tty, tty=tty) as show,
-    ):
-        return confirm(
-            found,
-            count,
-            folder / "confirm",
-            system=system,
-            workers=workers,
-            progress=None if show is None else lambda p: show("", *describe(p)),
-            should_stop=lambda: bool(stop),
-        )
+    # a file gets no lines of progress
+    silent = not sys.stderr.isatty()
+    with executing("stopping, finished bodies are kept", silent=silent) as how:
+        into = folder / "confirm"
+        return confirm(found, count, into, system=system, workers=workers, **how)
 
 
 def _number(option: str, text: str, unit: str) -> float:

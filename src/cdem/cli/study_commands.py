@@ -20,8 +20,8 @@ from cdem.cli.options import (
     Threads,
     allow_own_laws,
     allow_own_laws_of_study,
+    executing,
     print_paths,
-    stop_on_signal,
 )
 from cdem.errors import CaseError, CdemError
 
@@ -286,26 +286,13 @@ def sweep(
     if workers and scheduler:
         raise typer.BadParameter("--workers and --scheduler exclude one another")
     allow_own_laws_of_study(study_file, allow_code)
-    from cdem.run.progress import line
     from cdem.study.study import Study
-    from cdem.study.sweep import describe, run_study
+    from cdem.study.sweep import run_study
 
     folder = output or Path(f"{study_file.stem}.sweep")
-    tty = sys.stderr.isatty()
-    with (
-        stop_on_signal("stopping, finished runs are kept") as stop,
-        line(silent=quiet or (as_json and not tty), tty=tty) as show,
-    ):
-        table = run_study(
-            Study.load(study_file),
-            folder,
-            workers=workers,
-            scheduler=scheduler,
-            progress=None
-            if show is None
-            else lambda p: show(str(p.finished == p.total), *describe(p)),
-            should_stop=lambda: bool(stop),
-        )
+    with executing("stopping, finished runs are kept", silent=quiet, as_json=as_json) as how:
+        study = Study.load(study_file)
+        table = run_study(study, folder, workers=workers, scheduler=scheduler, **how)
     paths = table.write(folder)
     if not quiet:
         _warn(table.warnings)
