@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cdem.errors import CaseError
-from cdem.joints.tables import LENGTHS, Table, read_table
+from cdem.joints.tables import LENGTHS, Table, number, read_table
 from cdem.terrain.rasters import read_raster
 
 Floats = NDArray[np.float64]
@@ -85,7 +85,7 @@ def read_monitored(path: Path, unit: str | None = None, start: str | None = None
         return _of_raster(path, unit)
     if unit is not None:
         raise CaseError(f"{path}: a table has its units in its headings, dx [mm]; leave --unit out")
-    table = read_table(path, "table of displacements", lambda row: not _is_number(row[-1]))
+    table = read_table(path, "table of displacements", lambda row: np.isnan(number(row[-1])))
     table.find(NAMES)
     _check_columns(table)
     count = len(table.rows)
@@ -219,11 +219,3 @@ def _changes(table: Table, found: Monitored) -> Monitored:
         np.array(deviation),
         found.notes,
     )
-
-
-def _is_number(word: str) -> bool:
-    try:
-        float(word)
-    except ValueError:
-        return False
-    return True

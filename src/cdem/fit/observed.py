@@ -15,7 +15,7 @@ from cdem.case.map_system import look_up
 from cdem.errors import CaseError
 from cdem.fit.fitting import Fit
 from cdem.fit.schema import OfFront, OfOutline, OfResult, OfRunout, OfThickness
-from cdem.joints.tables import read_table
+from cdem.joints.tables import number, read_table
 from cdem.output.deposit import Deposit
 from cdem.output.mapped import read_outline
 from cdem.output.runout_result import RunOut
@@ -78,11 +78,11 @@ def observed(fit: Fit, crs: str | None) -> list[Observed]:
         CaseError: A file cannot be read, or a value is wrong.
     """
     found = []
-    for number, part in enumerate(fit.observed):
+    for place, part in enumerate(fit.observed):
         if isinstance(part, OfResult):
             found.append(_number(part.result, part.value, part.deviation))
         elif isinstance(part, OfRunout):
-            found.append(_measure(fit, number, part))
+            found.append(_measure(fit, place, part))
         elif isinstance(part, OfOutline):
             found.append(_outline(fit, part, crs))
         elif isinstance(part, OfThickness):
@@ -94,13 +94,13 @@ def observed(fit: Fit, crs: str | None) -> list[Observed]:
 
 def _number(name: str, value: float, deviation: float) -> Observed:
     def of_run(row: Row, found: RunOut | None) -> Floats:
-        number = row.get(name)
-        return np.array([math.nan if number is None else float(number)])
+        value = row.get(name)
+        return np.array([math.nan if value is None else float(value)])
 
     return Observed(name, "", np.array([value]), np.array([[deviation**2]]), of_run, False)
 
 
-def _measure(fit: Fit, number: int, part: OfRunout) -> Observed:
+def _measure(fit: Fit, place: int, part: OfRunout) -> Observed:
     def of_run(row: Row, found: RunOut | None) -> Floats:
         assert found is not None
         value: Any = found.as_dict()
@@ -108,7 +108,7 @@ def _measure(fit: Fit, number: int, part: OfRunout) -> Observed:
             value = value.get(key) if isinstance(value, dict) else None
         if isinstance(value, bool) or not isinstance(value, int | float | np.number):
             raise fit.error(
-                ("observed", number, "runout"), f"{part.runout} is no number of runout.json"
+                ("observed", place, "runout"), f"{part.runout} is no number of runout.json"
             )
         return np.array([float(value)])
 
@@ -202,7 +202,7 @@ def _mean_around(deposit: Deposit, at: Floats, step: Floats) -> Floats:
 
 def _front(part: OfFront, path: Path) -> Observed:
     """Distance of the front from the crown at some times [m]."""
-    table = read_table(path, "table of front times", lambda row: not _is_number(row[0]))
+    table = read_table(path, "table of front times", lambda row: np.isnan(number(row[0])))
     table.find({"time": ("time", "t"), "distance": ("distance", "front", "reach")})
     for key in ("time", "distance"):
         if key not in table.at:
@@ -223,14 +223,6 @@ def _front(part: OfFront, path: Path) -> Observed:
     gaps = np.abs(times[:, None] - times) / max(np.ptp(times) * ALIKE, 1e-12)
     covariance = part.deviation**2 * np.exp(-gaps)
     return Observed("front", "m", values, covariance, of_run, True, times, table.notes)
-
-
-def _is_number(word: str) -> bool:
-    try:
-        float(word)
-    except ValueError:
-        return False
-    return True
 
 
 def _correlation(at: Floats, length: float) -> Floats:
