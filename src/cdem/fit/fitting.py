@@ -3,34 +3,21 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
 
-from pydantic import PrivateAttr, ValidationError
-
-from cdem.case.explain import explain
-from cdem.case.reader import load_case_data, plain
-from cdem.case.source import Keys, Source
+from cdem.case.document import Document
+from cdem.case.reader import load_case_data
+from cdem.case.source import Keys
 from cdem.errors import CaseError
 from cdem.fit.schema import FitParts
 from cdem.study.study import Study
 
 
-class Fit(FitParts):
+class Fit(Document, FitParts):
     """A whole fit. Load one from a file, or build it here with the same names.
 
     Raises:
         CaseError: Every problem found, one line each: file:line:column: path: problem.
     """
-
-    _source: Source = PrivateAttr(default_factory=Source)
-
-    def __init__(self, _source: Source | None = None, **data: Any) -> None:
-        source = _source or Source()
-        try:
-            super().__init__(**plain(data, source))
-        except ValidationError as error:
-            raise explain(error, source, Fit) from None
-        self._source = source
 
     @classmethod
     def load(cls, path: str | Path) -> Fit:
@@ -40,13 +27,7 @@ class Fit(FitParts):
             CaseError: The file cannot be read or is wrong; one line for each problem.
         """
         data, source = load_case_data(Path(path), what="fit")
-        return cls(_source=source, **data)
-
-    @classmethod
-    def schema(cls) -> dict[str, Any]:  # type: ignore[override]
-        """Return the JSON schema of a fit file, for editors."""
-        whole = cls.model_json_schema() | {"title": "cdem fit"}
-        return {"$schema": "https://json-schema.org/draft/2020-12/schema"} | whole
+        return cls.of(data, source)
 
     def load_study(self) -> Study:
         """The study that is named.

@@ -9,11 +9,11 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import PrivateAttr, ValidationError
+from pydantic import PrivateAttr
 
-from cdem.case.explain import explain
-from cdem.case.reader import load_case_data, plain
-from cdem.case.source import Keys, Source
+from cdem.case.document import Document
+from cdem.case.reader import load_case_data
+from cdem.case.source import Keys
 from cdem.errors import CaseError
 from cdem.model.slips import DEEP
 from cdem.rockfall.blocks import Wish
@@ -25,7 +25,7 @@ from cdem.study.sampling import quantile
 from cdem.terrain.clouds import KINDS
 from cdem.terrain.features import read_features
 from cdem.terrain.files import read_outline
-from cdem.terrain.heights import Grid, Smooth
+from cdem.terrain.heights import Grid, Smooth, extra
 from cdem.terrain.landslide import Landslide
 from cdem.terrain.rasters import Box, read_raster
 from cdem.units import coordinates, to_number
@@ -42,26 +42,17 @@ FARTHEST = 1e9
 """Extent of a terrain that is used whole [m]."""
 
 
-class Rockfall(RockfallParts):
+class Rockfall(Document, RockfallParts):
     """The input of `cdem rockfall`.
 
     Raises:
         CaseError: Every problem found, one line each: file:line:column: path: problem.
     """
 
-    _source: Source = PrivateAttr(default_factory=Source)
     _site: Landslide | None = PrivateAttr(None)
 
-    def __init__(self, _source: Source | None = None, **data: Any) -> None:
-        source = _source or Source()
-        try:
-            super().__init__(**plain(data, source))
-        except ValidationError as error:
-            raise explain(error, source, Rockfall) from None
-        self._source = source
-        problems = list(_problems(self))
-        if problems:
-            raise source.error(problems)
+    def _contradictions(self) -> Iterator[tuple[Keys, str]]:
+        yield from _problems(self)
 
     @classmethod
     def load(cls, path: str | Path, overrides: Iterable[str] = ()) -> Rockfall:
@@ -75,13 +66,7 @@ class Rockfall(RockfallParts):
             CaseError: The file cannot be read or is wrong; one line for each problem.
         """
         data, source = load_case_data(Path(path), overrides, what="rockfall")
-        return cls(_source=source, **data)
-
-    @classmethod
-    def schema(cls) -> dict[str, Any]:  # type: ignore[override]
-        """Return the JSON schema of a rockfall file, for editors."""
-        whole = cls.model_json_schema() | {"title": "cdem rockfall"}
-        return {"$schema": "https://json-schema.org/draft/2020-12/schema"} | whole
+        return cls.of(data, source)
 
     def error(self, path: str, what: str) -> CaseError:
         """An error about a value, with its place in the file."""
@@ -99,7 +84,7 @@ class Rockfall(RockfallParts):
                 "extent": {"x": list(x), "y": list(y), "base": -FARTHEST},
                 "sizes": {"body": 1.0, "far": 1.0},
             }
-            self._site = Landslide(_source=self._source, **data)
+            self._site = Landslide.of(data, self._source)
         return self._site
 
     @property
@@ -120,9 +105,10 @@ class Rockfall(RockfallParts):
         zone = np.zeros((rows - 1, columns - 1), np.int16)
         x = grid.west + grid.step[0] * (np.arange(columns - 1) + 0.5)
         y = grid.south + grid.step[1] * (np.arange(rows - 1) + 0.5)
-        middles = np.stack(np.meshgrid(x, y), axis=-1)
+        middles = np.meshgrid(x, y)
         for number in range(len(self.ground.zones), 0, -1):  # the first counts
-            inside = within(self._ring(number - 1), middles)
+            shapely = extra("shapely", "a zone of the ground")
+            inside = shapely.contains_xy(shapely.Polygon(self._ring(number - 1)), *middles)
             if not inside.any():
                 raise self.error(
                     f"ground.zones.{number - 1}.area", "holds the middle of no cell of the terrain"
@@ -329,22 +315,6 @@ def _wrong_values(given: Rockfall) -> Iterator[tuple[Keys, str]]:
 def file_name(name: str) -> str:
     """A name as part of a file name."""
     return "".join(c if c.isalnum() or c in "-_" else "_" for c in name.lower())
-
-
-def within(ring: Floats, points: Floats) -> NDArray[np.bool_]:
-    """Whether points lie in a polygon, by the number of its sides to their right.
-
-    Args:
-        ring: Corners [m], shape (corners, 2).
-        points: [m], shape (..., 2).
-    """
-    inside = np.zeros(points.shape[:-1], bool)
-    x, y = points[..., 0], points[..., 1]
-    for (x0, y0), (x1, y1) in zip(ring, np.roll(ring, -1, axis=0), strict=True):
-        crosses = (y0 > y) != (y1 > y)
-        if y1 != y0:
-            inside ^= crosses & (x < x0 + (y - y0) * (x1 - x0) / (y1 - y0))
-    return inside
 
 
 def _of(drawn: Drawn, value: float, unit: str) -> float:

@@ -108,9 +108,9 @@ def _study(path: Path, factor: float, density: float) -> Study:
         tolerance=TOLERANCE * factor,
         criterion=Criterion(far=FAR),
     )
-    return Study(
-        _source=Source(file=str(path.parent / "study.yaml")),
-        case=path.name,
-        parameters={"materials.rock.density": [density]},
-        critical=search.model_dump(),
-    )
+    data = {
+        "case": path.name,
+        "parameters": {"materials.rock.density": [density]},
+        "critical": search.model_dump(),
+    }
+    return Study.of(data, Source(file=str(path.parent / "study.yaml")))

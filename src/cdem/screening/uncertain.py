@@ -6,15 +6,15 @@ import difflib
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import Field, PrivateAttr, ValidationError
+from pydantic import Field
 
-from cdem.case.explain import explain
-from cdem.case.reader import load_case_data, plain
-from cdem.case.source import Keys, Source
+from cdem.case.document import Document
+from cdem.case.reader import load_case_data
+from cdem.case.source import Keys
 from cdem.case.types import Part
 from cdem.joints.directions import pole
 from cdem.screening.loads import Loads
@@ -46,23 +46,13 @@ class _Uncertain(Part):
     )
     sampling: Sampling = Field(description="Sampling of the distributions")
 
-    _source: Source = PrivateAttr(default_factory=Source)
 
-
-class Uncertain(_Uncertain):
+class Uncertain(Document, _Uncertain):
     """Distributions of what a screening depends on.
 
     Raises:
         CaseError: Every problem found, one line each: file:line:column: path: problem.
     """
-
-    def __init__(self, _source: Source | None = None, **data: Any) -> None:
-        source = _source or Source()
-        try:
-            super().__init__(**plain(data, source))
-        except ValidationError as error:
-            raise explain(error, source, Uncertain) from None
-        self._source = source
 
     @classmethod
     def load(cls, path: Path) -> Uncertain:
@@ -72,13 +62,7 @@ class Uncertain(_Uncertain):
             CaseError: The file cannot be read or is wrong; one line for each problem.
         """
         data, source = load_case_data(path, what="distribution")
-        return cls(_source=source, **data)
-
-    @classmethod
-    def schema(cls) -> dict[str, Any]:  # type: ignore[override]
-        """Return the JSON schema of a file of distributions, for editors."""
-        whole = cls.model_json_schema() | {"title": "cdem uncertain"}
-        return {"$schema": "https://json-schema.org/draft/2020-12/schema"} | whole
+        return cls.of(data, source)
 
     def for_sets(self, planes: Sequence[JointPlane], loads: Loads) -> None:
         """Check all names against the sets and loads.

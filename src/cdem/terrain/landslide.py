@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import PrivateAttr, ValidationError
+from pydantic import PrivateAttr
 
-from cdem.case.explain import explain
+from cdem.case.document import Document
 from cdem.case.map_system import look_up, unfit
-from cdem.case.reader import load_case_data, plain
-from cdem.case.source import Source
+from cdem.case.reader import load_case_data
+from cdem.case.source import Keys
 from cdem.errors import CaseError
 from cdem.terrain import files, surfaces
 from cdem.terrain.facet_files import read_facets
@@ -41,29 +41,24 @@ from cdem.terrain.triangles import Triangles
 Floats = NDArray[np.float64]
 
 
-class Landslide(LandslideParts):
+class Landslide(Document, LandslideParts):
     """The input of `cdem mesh`: terrain, sliding surface and bodies, or layers; sizes.
 
     Raises:
         CaseError: Every problem found, one line each: file:line:column: path: problem.
     """
 
-    _source: Source = PrivateAttr(default_factory=Source)
     _projection: Projection | None = PrivateAttr(None)
 
-    def __init__(self, _source: Source | None = None, **data: Any) -> None:
-        source = _source or Source()
-        try:
-            super().__init__(**plain(data, source))
-        except ValidationError as error:
-            raise explain(error, source, Landslide) from None
-        self._source = source
-        parts = [(f"bodies.{i}.group", body.group) for i, body in enumerate(self.bodies)]
-        parts += [(f"layers.{i}.group", layer.group) for i, layer in enumerate(self.layers)]
+    def _contradictions(self) -> Iterator[tuple[Keys, str]]:
+        parts: list[tuple[Keys, str]] = [
+            (("bodies", i, "group"), body.group) for i, body in enumerate(self.bodies)
+        ]
+        parts += [(("layers", i, "group"), layer.group) for i, layer in enumerate(self.layers)]
         names = [self.bedrock]
-        for key, name in parts:
+        for keys, name in parts:
             if name in names:
-                raise self.error(key, f"the name '{name}' is used twice; choose another")
+                yield keys, f"the name '{name}' is used twice; choose another"
             names.append(name)
 
     @classmethod
@@ -78,7 +73,7 @@ class Landslide(LandslideParts):
             CaseError: The file cannot be read or is wrong; one line for each problem.
         """
         data, source = load_case_data(Path(path), overrides)
-        return cls(_source=source, **data)
+        return cls.of(data, source)
 
     def error(self, path: str, what: str) -> CaseError:
         """An error about a value, with its place in the file."""
