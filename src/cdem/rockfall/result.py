@@ -94,10 +94,7 @@ class AtBarrier:
             "share_band": share_of(self.reached, self.runs) if self.runs else None,
             "above": self.above(),
             "quantiles": {
-                name: [
-                    {"level": q.level, "value": q.value, "low": q.low, "high": q.high}
-                    for q in self.quantiles(name)
-                ]
+                name: [quantile_dict(q) for q in self.quantiles(name)]
                 for name in ("height", "bottom", "top", "velocity", "spin", "energy_translation",
                              "energy_rotation", "energy")
             },

@@ -11,14 +11,13 @@ from pathlib import Path
 import numpy as np
 
 from cdem._version import __version__
-from cdem.errors import CdemError
 from cdem.rockfall.ground import Ground
 from cdem.rockfall.rockfall import Rockfall
 from cdem.rockfall.starts import Starts
 from cdem.rockfall.worker import execute, finished, wish_as_dict
 from cdem.study.local_workers import LocalWorkers
 from cdem.study.run import Run
-from cdem.study.sweep import SweepProgress, dask_workers, execute_all
+from cdem.study.sweep import SweepProgress, dask_workers, execute_all, open_own
 from cdem.whole_files import refuse_link, write_json
 
 PROGRAM = "cdem.rockfall.worker"
@@ -144,13 +143,7 @@ def run_rockfall(
 def _open(found: Runs) -> None:
     """Make the folder, unless it contains other files; store the ground and the input."""
     folder = found.folder
-    if folder.exists() and not folder.is_dir():
-        raise CdemError(f"{folder}: is a file; name another folder with -o")
-    if folder.exists() and any(folder.iterdir()) and not (folder / OWN).is_file():
-        raise CdemError(
-            f"{folder}: contains other files than a rockfall; name another folder with -o"
-        )
-    folder.mkdir(parents=True, exist_ok=True)
+    open_own(folder, OWN, "a rockfall")
     refuse_link(folder / "runs")
     content = found.rockfall.model_dump(mode="json", exclude_unset=True)
     write_json(folder / OWN, {"input": content, "physics": found.runs[0].task["physics"]})

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -175,8 +174,3 @@ def _fractions(parts: NDArray[np.int64]) -> Floats:
     """0, 1/n, 2/n ... for each n."""
     first = np.repeat(np.cumsum(parts) - parts, parts)
     return (np.arange(parts.sum()) - first) / np.repeat(parts, parts)
-
-
-def as_columns(rows: list[dict[str, Any]], names: list[str]) -> dict[str, list[Any]]:
-    """Rows as columns."""
-    return {name: [row[name] for row in rows] for name in names}

@@ -119,13 +119,27 @@ def run_studies(
     return tables
 
 
-def _open(folder: Path, study: Study, runs: list[Run]) -> None:
-    """Make the folder of the sweep, unless it contains other files; store the random values."""
+def open_own(folder: Path, own: str, what: str) -> None:
+    """Make a folder for results, unless it contains other files.
+
+    Args:
+        folder: The folder.
+        own: Name of the file by which an earlier folder is known.
+        what: The kind of results.
+
+    Raises:
+        CdemError: It is a file, or contains other files.
+    """
     if folder.exists() and not folder.is_dir():
         raise CdemError(f"{folder}: is a file; name another folder with -o")
-    if folder.exists() and any(folder.iterdir()) and not (folder / "study.json").is_file():
-        raise CdemError(f"{folder}: contains other files than a sweep; name another folder with -o")
+    if folder.exists() and any(folder.iterdir()) and not (folder / own).is_file():
+        raise CdemError(f"{folder}: contains other files than {what}; name another folder with -o")
     folder.mkdir(parents=True, exist_ok=True)
+
+
+def _open(folder: Path, study: Study, runs: list[Run]) -> None:
+    """Make the folder of the sweep, unless it contains other files; store the random values."""
+    open_own(folder, "study.json", "a sweep")
     refuse_link(folder / "plots")
     if study.sampling:  # first: no run without stored values
         write_json(folder / SAMPLES, to_keep(study, [run.parameters for run in runs]))
