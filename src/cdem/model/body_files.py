@@ -16,9 +16,11 @@ from cdem.joints.cell_mesh import to_mesh
 from cdem.joints.convex_cells import from_polyhedron, join
 from cdem.mesh.arrays import components
 from cdem.mesh.mesh import Mesh, merge
-from cdem.mesh.mesh_files import MEND, read_raw
+from cdem.mesh.mesh_files import MEND
 from cdem.mesh.obj_file import NO_SHAPE, read_obj, within
+from cdem.mesh.ply_file import read_ply
 from cdem.mesh.primitives import outward_faces, snapped
+from cdem.mesh.stl_file import read_stl
 from cdem.model import vtk_cells
 from cdem.units import coordinates
 
@@ -165,7 +167,7 @@ def _bodies(path: Path, scale: float, unused: list[str]) -> list[Body]:
         bodies = list(_vtk(path))
     elif kind in SHELLS:
         with reading(path, MeshError, MEND):
-            bodies = list((_obj if kind == ".obj" else _by_meshio)(path, unused))
+            bodies = list(READERS[kind](path, unused))
     else:
         raise MeshError(f"{path}: bodies are read from {', '.join((*SHELLS, *CELLS))} files")
     if not bodies:
@@ -262,8 +264,15 @@ def _tell_unused(path: Path, others: Counter[str], unused: list[str]) -> None:
         unused.append(f"{path.name}: only faces are used; {kinds}{more} ignored")
 
 
-def _by_meshio(path: Path, unused: list[str]) -> Iterator[Body]:
-    raw = read_raw(path)
+def _stl(path: Path, unused: list[str]) -> Iterator[Body]:
+    points, _ = read_stl(path)
+    if not len(points):
+        raise MeshError(f"{path}: contains no readable faces; is the file complete?")
+    yield from _surfaces(points, np.arange(len(points)).reshape(-1, 3).tolist())
+
+
+def _ply(path: Path, unused: list[str]) -> Iterator[Body]:
+    raw = read_ply(path)
     loops: Loops = []
     others: Counter[str] = Counter()
     for block in raw.cells:
@@ -277,6 +286,9 @@ def _by_meshio(path: Path, unused: list[str]) -> Iterator[Body]:
         raise MeshError(f"{path}: a face refers to a missing vertex")
     _tell_unused(path, others, unused)
     yield from _surfaces(np.asarray(raw.points, float), loops)
+
+
+READERS = {".obj": _obj, ".stl": _stl, ".ply": _ply}
 
 
 def _vtk(path: Path) -> Iterator[Body]:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import importlib
-import re
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -12,8 +11,8 @@ from numpy.typing import NDArray
 
 from cdem.case import reader_process
 from cdem.case.input_file import is_file, reading
-from cdem.errors import BackendError, CaseError
-from cdem.mesh.mesh_files import read_raw
+from cdem.errors import BackendError, CaseError, MeshError
+from cdem.mesh.ply_file import read_ply
 from cdem.outcrop.text_points import read_text_points
 from cdem.terrain.cloud_sums import MEND
 
@@ -26,8 +25,6 @@ CLOUDS_ONLY = (*LIDAR, ".ply", ".xyz", ".pts")
 """Endings of files that are no tables of joints."""
 MOST_READ = 20_000_000
 """Most points that are read of LAS and LAZ; of more, every second, third ... one."""
-LONGEST_HEAD = 100_000
-"""Bytes in which the header of a PLY file ends."""
 WIDEST = 10_000.0
 """Largest extent of an outcrop [m]; more is a wrong unit, or a point far away."""
 FLATTEST = 1e-3
@@ -97,16 +94,10 @@ def _lidar(path: Path, notes: list[str]) -> Floats:
 
 def _ply(path: Path, notes: list[str]) -> Floats:
     with reading(path, CaseError, "a cloud is ASCII or binary PLY, with x, y, z of its vertices"):
-        with path.open("rb") as file:
-            head = file.read(LONGEST_HEAD).partition(b"end_header")
-        told = re.search(rb"element\s+vertex\s+(\d+)", head[0])
-        if not head[0].startswith(b"ply") or not head[1] or told is None:
-            raise CaseError(f"{path}: has no header of a PLY file with vertices; is it complete?")
-        raw = read_raw(path)
-        if len(raw.points) != int(told[1]):
-            raise CaseError(
-                f"{path}: names {int(told[1]):,} points and has {len(raw.points):,}: it is cut off"
-            )
+        try:
+            raw = read_ply(path)
+        except MeshError as error:
+            raise CaseError(str(error)) from None
         points = np.asarray(raw.points)
         if points.ndim != 2 or points.shape[1] != 3:
             raise CaseError(f"{path}: its vertices have no x, y, z")

@@ -9,12 +9,12 @@ import numpy as np
 
 from cdem.case.input_file import is_file, reading
 from cdem.errors import CaseError, CdemError
-from cdem.mesh.mesh_files import read_raw
 from cdem.mesh.obj_file import NO_SHAPE, read_obj, within
+from cdem.mesh.ply_file import read_ply
+from cdem.mesh.stl_file import read_stl
 from cdem.terrain.dxf_faces import read_dxf_faces
 from cdem.terrain.facets import Facets, fanned
 from cdem.terrain.gocad import read_gocad
-from cdem.terrain.stl_file import read_stl
 
 KINDS = (".obj", ".stl", ".ply", ".ts", ".dxf")
 MEND = f"a surface of triangles is read from {', '.join(KINDS[:-1])} or {KINDS[-1]}"
@@ -22,6 +22,8 @@ LOOKS = "mtllib"
 """Word of an OBJ file that names a file of materials, which is not opened."""
 FARTHEST = 1e9
 """Coordinates from which on numbers are no places [m]."""
+VISIBLE = 1e-3
+"""Rounding of coordinates from which a note tells of it [m]."""
 SHOWN = 4
 """Most kinds in a note."""
 
@@ -74,7 +76,7 @@ def _read(path: Path, kind: str, layer: str | None) -> Facets:
     if kind == ".dxf":
         return read_dxf_faces(path, layer)
     if kind == ".stl":
-        return read_stl(path)
+        return _stl(path)
     return _obj(path) if kind == ".obj" else _ply(path)
 
 
@@ -87,8 +89,19 @@ def _obj(path: Path) -> Facets:
     return Facets(found.points, fanned(found.loops), notes, others)
 
 
+def _stl(path: Path) -> Facets:
+    points, rounding = read_stl(path)
+    found = Facets(points, np.arange(len(points)).reshape(-1, 3), rounding=rounding)
+    if rounding > VISIBLE:
+        found.notes.append(
+            f"{path.name}: STL keeps seven digits, so coordinates of {np.abs(points).max():.3g} are "
+            f"right to {rounding:.2g} only; export another format, or subtract an offset"
+        )
+    return found
+
+
 def _ply(path: Path) -> Facets:
-    raw = read_raw(path)
+    raw = read_ply(path)
     loops: list[list[int]] = []
     others: Counter[str] = Counter()
     for block in raw.cells:

@@ -77,6 +77,20 @@ def test_solids_of_an_stl_that_share_a_face(tmp_path, binary):
     assert volume(made) == pytest.approx(2e-9, rel=1e-6)
 
 
+def test_a_damaged_stl_is_refused(tmp_path):
+    import meshio
+
+    points, faces = cubes()
+    path = tmp_path / "a.stl"
+    meshio.Mesh(points, [("triangle", np.array(triangles(faces)))]).write(path)
+    sound = path.read_text()
+    path.write_text(sound.replace("vertex 1.0 1.0 1.0", "vertex 1.0 1.0 1.0 1.0", 1))
+    with pytest.raises(
+        cdem.MeshError, match=r"a\.stl:\d+: cannot be read: vertex 1\.0 1\.0 1\.0 1"
+    ):
+        read_bodies(path, "rock")
+
+
 @pytest.mark.parametrize("binary", [True, False])
 def test_ply(tmp_path, binary):
     """Solids of quadrilaterals and of triangles that share a face."""
@@ -227,8 +241,8 @@ def test_vtk_may_die_of_a_file(tmp_path):
     ("a.obj", "v 1 2 3\nv x 0 0\n", "a.obj:2: cannot be read"),
     ("a.obj", "v 1 2 3\nv 1 2\n", "a.obj:2: cannot be read"),
     ("a.obj", "", "contains no faces"),
-    ("a.stl", "not one", "a.stl: cannot be read"),
-    ("a.ply", "not one", "a.ply: cannot be read"),
+    ("a.stl", "not one", "a.stl: is no complete STL"),
+    ("a.ply", "not one", "a.ply: has no header of a PLY file"),
     ("a.ply", PLY_HEAD.format(3, 0) + "0 0 0\n1 0 0\n0 1 0\n", "contains no readable faces"),
     ("a.ply", PLY_HEAD.format(1, 1) + "0 0 0\n3 0 0 -1\n", "cannot be read|refers to a missing vertex"),
     ("a.ply", PLY_HEAD.format(2, 1) + "0 0 0\n1 0 0\n3 0 1 7\n", "a face refers to a missing vertex"),
