@@ -97,6 +97,8 @@ class Simulation(RunState):
         exchange: Exchange | None = None,
         more: Mesh | None = None,
     ) -> None:
+        if more is not None and output is not None:
+            raise ValueError("a result folder does not keep more bodies; give no output with them")
         if isinstance(case, dict):
             case = Case.from_dict(case)
         case = case if isinstance(case, Case) else Case.load(case)

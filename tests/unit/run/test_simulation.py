@@ -144,3 +144,11 @@ def test_threads_are_those_that_the_core_has(monkeypatch):
     monkeypatch.setattr(native.core, "max_threads", lambda: 1)  # as without OpenMP
     sim = cdem.Simulation("cube.yaml", threads=3)
     assert sim.threads == 1
+
+
+def test_bodies_of_the_caller_go_with_no_result_folder(cube_folder):
+    case = cdem.Case.load("cube.yaml")
+    mesh = cdem.Simulation(case).build.mesh
+    with pytest.raises(ValueError, match="give no output with them"):
+        cdem.Simulation(case, output="a.results", more=mesh)
+    assert not (cube_folder / "a.results").exists()
