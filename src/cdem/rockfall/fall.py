@@ -249,8 +249,9 @@ class _Run:
         def look(sim: Simulation) -> bool:
             nonlocal last
             self._time = begin + sim.time
-            self._position = sim.fields["position"][nodes] + origin
-            last = self._body.motion(self._position, sim.fields["velocity"][nodes])
+            rows = rows_of(sim.core, "node.motion")
+            self._position = rows.position[nodes] + origin
+            last = self._body.motion(self._position, rows.velocity[nodes])
             self._note(last, self._position)
             self.out.status = self._end(last)
             return bool(self.out.status) or self._leaves(last, low, high)
