@@ -179,26 +179,27 @@ void for_each_item(Queue, Index count, const Kernel& kernel) {
 template <class Kernel>
 void for_each_selected(Queue, Index count, const Kernel& kernel) {
   on_threads(count >= worth_threads, [&](Thread thread) {
-    constexpr Index most = 8 * lanes;
-    SelectedLane some[most / lanes];
-    Index selected = 0;
-    const auto select_of = [&](Index row) {
-      const Range all = kernel.items(row);
-      for (Index id = all.first; id < all.last; ++id) {
-        some[selected / lanes].row.id[selected % lanes] = row;
-        some[selected / lanes].id.id[selected % lanes] = id;
-        selected += kernel.selects(row, id) ? 1 : 0;
-        if (selected < most) continue;
-        for (const SelectedLane& lane : some) kernel(lane);
-        selected = 0;
-      }
-    };
+    constexpr unsigned size = lanes, most = 8 * size;  // unsigned: shifts and masks divide
+    SelectedLane some[most / size];
+    unsigned selected = 0;
     thread.deal(count, 128, [&](Index first, Index last) {
-      for (Index row = first; row < last; ++row) select_of(row);
+      unsigned chosen = selected;  // in a register: each item waits for the number before it
+      for (Index row = first; row < last; ++row) {
+        const Range all = kernel.items(row);
+        for (Index id = all.first; id < all.last; ++id) {
+          some[chosen / size].row.id[chosen % size] = row;
+          some[chosen / size].id.id[chosen % size] = id;
+          chosen += kernel.selects(row, id) ? 1 : 0;
+          if (chosen < most) continue;
+          for (const SelectedLane& lane : some) kernel(lane);
+          chosen = 0;
+        }
+      }
+      selected = chosen;
     });
-    for (Index j = 0; j < selected / lanes; ++j) kernel(some[j]);
-    for (Index j = selected - selected % lanes; j < selected; ++j)
-      kernel(Selected{some[j / lanes].row.id[j % lanes], some[j / lanes].id.id[j % lanes]});
+    for (unsigned j = 0; j < selected / size; ++j) kernel(some[j]);
+    for (unsigned j = selected - selected % size; j < selected; ++j)
+      kernel(Selected{some[j / size].row.id[j % size], some[j / size].id.id[j % size]});
   });
 }
 
