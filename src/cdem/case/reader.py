@@ -27,6 +27,9 @@ STARTS = {
     "distribution": "see docs/screening.md",
     "rockfall": "'cdem new rockfall_runs' writes one to start from",
     "fit": "see docs/observations.md",
+    "landslide": "'cdem new landslide_dem' writes one to start from",
+    "joint": "'cdem joints' writes one from a table or a cloud",
+    "profile": "see docs/records.md",
 }
 """Where to look for the content of an empty file, for each kind of file."""
 

@@ -18,11 +18,11 @@ Floats = NDArray[np.float64]
 COMPONENTS = ("dx", "dy", "dz", "los")
 """Displacement to the east, to the north, upwards; along the line of sight, towards the satellite."""
 NAMES: dict[str, tuple[str, ...]] = {
-    "name": ("name", "point", "station", "prism", "pid", "benchmark"),
+    "name": ("name", "point", "punkt", "station", "prism", "prisma", "pid", "benchmark"),
     "x": ("x", "east", "easting", "e", "rechtswert"),
     "y": ("y", "north", "northing", "n", "hochwert"),
     "z": ("z", "height", "elevation", "altitude", "h", "hohe", "hoehe"),
-    "time": ("time", "t"),
+    "time": ("time", "zeit", "t"),
     "date": ("date", "datum", "epoch"),
     "dx": ("dx", "ux", "de", "ue", "displacement_x", "east_displacement", "d_east"),
     "dy": ("dy", "uy", "dn", "un", "displacement_y", "north_displacement", "d_north"),
@@ -35,6 +35,9 @@ NAMES: dict[str, tuple[str, ...]] = {
 }
 """Columns and their possible headings, in the form of `plain`."""
 SECONDS_PER_DAY = 86400.0
+TIMES = {"": 1.0, "s": 1.0, "ms": 0.001, "min": 60.0, "h": 3600.0, "d": SECONDS_PER_DAY}
+TIMES |= {"seconds": 1.0, "hours": 3600.0, "days": SECONDS_PER_DAY}
+"""Units of times, and their seconds."""
 MOST_CELLS = 20_000
 """Most cells of a raster that are compared."""
 
@@ -165,7 +168,7 @@ def _times(table: Table, start: str | None) -> Floats:
     if "time" in table.at:
         if start is not None:
             raise CaseError(f"{table.path}: has times, not dates; leave --start out")
-        times = table.numbers("time")
+        times = table.numbers("time") * table.factor("time", TIMES)
         if not np.isfinite(times).all():
             row = int(np.isfinite(times).argmin())
             raise CaseError(f"{table.path}:{table.lines[row]}: time must be a number [s]")

@@ -69,7 +69,7 @@ def read_planes(path: Path) -> tuple[list[JointPlane], list[str]]:
     Raises:
         CaseError: The file is wrong, or a strength is missing; names the place.
     """
-    data, source = load_case_data(path, what="case")
+    data, source = load_case_data(path, what="joint")
     model = data.get("model")
     part: dict[str, Any] = {"model": {}}
     if isinstance(model, dict) and "joints" in model:

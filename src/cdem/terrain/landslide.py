@@ -72,7 +72,7 @@ class Landslide(Document, LandslideParts):
         Raises:
             CaseError: The file cannot be read or is wrong; one line for each problem.
         """
-        data, source = load_case_data(Path(path), overrides)
+        data, source = load_case_data(Path(path), overrides, "landslide")
         return cls.of(data, source)
 
     def error(self, path: str, what: str) -> CaseError:

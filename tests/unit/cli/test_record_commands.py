@@ -86,6 +86,12 @@ def test_a_wrong_profile_is_told_with_its_place(folder, run_cli, old, new, said)
     assert status == 1 and said in err and len(err.splitlines()) == 1
 
 
+def test_an_empty_profile_is_told(folder, run_cli):
+    (folder / "p.yaml").write_text("# nothing\n")
+    status, _, err = run_cli("record", "response", "--profile", "p.yaml")
+    assert status == 1 and err == "p.yaml: the file is empty; see docs/records.md\n"
+
+
 def test_a_highest_frequency_out_of_range_is_refused(folder, run_cli):
     """Above half of the samples a second there is nothing."""
     words = ["s.at2", "--profile", "p.yaml", "-o", "up.csv", "--f-max", "101"]

@@ -34,6 +34,12 @@ def test_a_gap_is_not_a_zero(table):
     assert np.isnan(found.at[:, 2]).all()
 
 
+@pytest.mark.parametrize(("unit", "seconds"), [("[h]", 7200), ("(d)", 172800), ("[s]", 2), ("", 2)])
+def test_times_have_the_unit_of_their_heading(table, unit, seconds):
+    found = read_monitored(table(f"Punkt;x;y;dz [mm];Zeit {unit}\nA;1;2;-3,5;2\n"))
+    assert found.time.tolist() == [seconds] and found.names == ["A"]
+
+
 def test_dates_give_times_from_the_start(table):
     path = table("point,x,y,date,dz\nA,0,0,2024-03-02,0.1\nA,0,0,2024-03-03,0.2\n")
     found = read_monitored(path, start="2024-03-01T12:00")
