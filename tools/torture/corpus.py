@@ -63,6 +63,7 @@ def write_cases(folder: Path) -> None:
     (folder / "parts-solid.yaml").write_text(parts_of_cases.SOLID)
     (folder / "parts-waves.yaml").write_text(parts_of_cases.WAVES)
     (folder / "parts-joints.yaml").write_text(parts_of_cases.JOINTS)
+    (folder / "parts-fit.yaml").write_text(parts_of_cases.FIT)
     trees = {f"scene-{name}": scene() for name, scene in SCENES.items()}
     trees |= {f"law-{name}": case for name, case in parts_of_cases.of_laws().items()}
     for name, tree in trees.items():
@@ -72,6 +73,8 @@ def write_cases(folder: Path) -> None:
     (folder / "cube.yaml").write_text(cases.CUBE)
     (folder / "case.yaml").write_text(cases.CUBE)
     shutil.copy(ROOT / "src/cdem/templates/slope.msh", folder)
+    for path in (ROOT / "src/cdem/templates/rockfall_runs").glob("*.asc"):
+        shutil.copy(path, folder)
     skin = _cube()
     (folder / "cube.obj").write_text(skin[0])
     skin[1].write(folder / "cube.stl", binary=False)
@@ -115,9 +118,9 @@ def _write_outcrops(folder: Path) -> None:
     cloud.write(folder / "outcrop-g.laz")
     head = "Index; CenterX; NormalX; NormalY; NormalZ; Horiz_ext; Vert_ext; Dip dir.; Dip; Family ind.; \n"
     facets = "".join(f"{k};{k}.5;0.5;0;0.866;1;1;90;30;{k % 2};\n" for k in range(6))
-    (folder / "facets-a.csv").write_text(head + facets)
+    (folder / "joints-a.csv").write_text(head + facets)
     clusters = "".join(f"{k}\t1\t2\t{1 + k % 2}\t{1 + k // 2}\t0\t0\t1\t-2\n" for k in range(8))
-    (folder / "facets-b.txt").write_text(clusters)
+    (folder / "joints-b.txt").write_text(clusters)
 
 
 def _write_records(folder: Path) -> None:

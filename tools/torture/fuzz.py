@@ -102,9 +102,14 @@ def make(kind: str, seed: int, number: int, seeds: list[Path]) -> tuple[str, byt
 
 
 def read_case(path: Path) -> None:
-    """Read a case, study, landslide or distribution file; build the model of a case if it is small."""
+    """Read a case, or a file beside it; build the model of a case if it is small."""
     from cdem.case.case import Case
+    from cdem.fit.fitting import Fit
+    from cdem.rockfall import run as rockfall
+    from cdem.rockfall.rockfall import Rockfall
     from cdem.run.simulation import Simulation
+    from cdem.screening.loads import Loads
+    from cdem.screening.planes import read_planes
     from cdem.screening.uncertain import Uncertain
     from cdem.study.plan import plan
     from cdem.study.schema import run_count
@@ -114,7 +119,17 @@ def read_case(path: Path) -> None:
     seed = path.with_name(path.name.replace("-now-", "-"))  # none for an input of the corpus
     sound = (seed if seed.exists() else path).read_text(errors="replace")
     if "\nuncertain:" in sound:
-        Uncertain.load(path).draw()
+        chances = Uncertain.load(path)
+        chances.for_sets(read_planes(path.with_name("screening-joints.yaml"))[0], Loads())
+        chances.draw()
+        return
+    if "\nrockfall:" in sound:
+        given = Rockfall.load(path)
+        if given.count <= 1000:
+            rockfall.plan(given, path.parent)
+        return
+    if "\nobserved:" in sound:
+        Fit.load(path).load_study()
         return
     if "\nparameters:" in sound:
         study = Study.load(path)
@@ -196,7 +211,7 @@ def read_file(path: Path) -> None:
         ).steps()
     elif kind == "outcrop":
         read_outcrop(path)
-    elif kind == "facets":
+    elif kind == "joints":
         read_measured(path)
     elif kind == "monitored":
         read_monitored(path)

@@ -182,12 +182,27 @@ histories:
   - {name: base, boundary: base, quantities: [v_base, v_up, v_down], every: 1 ms}
   - {name: crest, point: [0, 0, 4], quantities: [velocity, acceleration]}
 """
+FIT = """\
+# Which frictions made this deposit?
+fit: 1
+title: a fit
+study: study.yaml
+seed: 3
+observed:
+  - {outline: {file: mapped.gpkg, layer: affected}, deviation: "4 m", length: 30}
+  - {thickness: deposit.tif, deviation: "0.5 m"}
+  - {front: front.csv, deviation: "2 m"}
+  - {runout: deposit.length, value: 90.5, deviation: 2}
+  - {result: travel, value: 44, deviation: 1}
+"""
+"""A fit with observations of every kind."""
 BESIDE = {
     "pressures.csv": "x,y,z,pressure\n0,0,0,1e4\n9,0,0,1e4\n0,9,0,1e4\n0,0,9,0\n9,9,9,0\n",
     "factor.csv": "time [ms], factor [%]\n0, 0\n5, 100\n",
     "wave.csv": "time [s], velocity [cm/s]\n"
     + "".join(f"{0.02 * i:.2f}, {math.sin(0.6 * i):.3f}\n" for i in range(64)),
     "discs.csv": "x,y,z,dip,dip_direction,radius\n1,1,1,30,90,1\n",
+    "study.yaml": "case: cube.yaml\nparameters: {materials.rock.density: [2600, 2700]}\n",
     "heights.asc": "ncols 3\nnrows 3\nxllcorner -5\nyllcorner -5\ncellsize 10\n" + "1 1 1\n" * 3,
 }
 """Small files that the cases name."""
