@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from cdem.rockfall.rockfall import Rockfall
-from cdem.rockfall.run import plan
+from cdem.rockfall.run import plan, run_rockfall
 from cdem.rockfall.worker import TRACK, execute, place
 
 FILE = """rockfall: 1
@@ -136,3 +136,17 @@ def test_folders_of_others_are_left_alone(run_cli, slope):
     assert "is a file" in err
     assert run_cli("rockfall", "fall.yaml", "--workers", "1", "--scheduler", "tcp://x")[0] == 2
     assert "No such file" in run_cli("rockfall", "none.yaml")[2]
+
+
+@pytest.mark.slow  # a cluster takes seconds to begin
+def test_runs_on_dask_are_those_of_local_workers(slope):
+    distributed = pytest.importorskip("distributed")
+    run_rockfall("fall.yaml", "local", workers=2)
+    with distributed.LocalCluster(
+        n_workers=1, threads_per_worker=1, dashboard_address=":0", silence_logs=50
+    ) as cluster:
+        found = run_rockfall("fall.yaml", "dask", scheduler=cluster.scheduler_address)
+    for run in found.runs:
+        assert run.result["status"] != "failed"
+        tracks = [slope / folder / "runs" / run.name / TRACK for folder in ("local", "dask")]
+        assert tracks[0].read_bytes() == tracks[1].read_bytes()
