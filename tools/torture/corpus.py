@@ -63,7 +63,7 @@ def write_cases(folder: Path) -> None:
     (folder / "parts-solid.yaml").write_text(parts_of_cases.SOLID)
     (folder / "parts-waves.yaml").write_text(parts_of_cases.WAVES)
     (folder / "parts-joints.yaml").write_text(parts_of_cases.JOINTS)
-    (folder / "parts-fit.yaml").write_text(parts_of_cases.FIT)
+    (folder / "beside-fit.yaml").write_text(parts_of_cases.FIT)
     trees = {f"scene-{name}": scene() for name, scene in SCENES.items()}
     trees |= {f"law-{name}": case for name, case in parts_of_cases.of_laws().items()}
     for name, tree in trees.items():

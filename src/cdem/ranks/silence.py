@@ -22,7 +22,7 @@ TIMEOUT = 600.0
 """Longest wait for other ranks, unless CDEM_MPI_TIMEOUT tells another [s]."""
 ANSWER_TIME = 3.0
 """A rank that works answers within this time [s]."""
-TURN, MOST_TURNS = 0.5, 6
+TURN, MOST_TURNS = 2.0, 3
 """Where ranks cannot ask, each waits for those below it, so long each and at most [s]; two that end at
 once would leave the status of a killed one."""
 ASK, ANSWER = 1, 2

@@ -67,6 +67,16 @@ def test_every_field_is_in_a_case(seeds):
     assert not missing
 
 
+@pytest.mark.parametrize(
+    "name", ["beside-fit", "rockfall_runs-rockfall_runs", "screening-uncertain"]
+)
+def test_files_beside_the_case_are_sound(seeds, monkeypatch, name):
+    monkeypatch.syspath_prepend(str(TOOLS))
+    import fuzz
+
+    fuzz.read_case(seeds / f"{name}.yaml")
+
+
 @pytest.mark.parametrize("name", [*BLOCK_LAWS, *INTERFACE_LAWS])
 def test_every_law_has_a_case(seeds, name):
     case = Case.load(seeds / f"law-{name}.yaml")
