@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
+import threading
 import time
 import traceback
 import zlib
@@ -20,6 +21,8 @@ PATIENCE = 5.0
 """A rank that fails waits so long for the others to fail too [s]."""
 TELLING = 0.5
 """What started the ranks passes on the last words within this time; some drop them at an abort [s]."""
+ABORT_TIME = 3.0
+"""An abort that lasts longer hangs [s]."""
 FAILED = 70
 """Exit status of all ranks after an error of some of them."""
 
@@ -40,13 +43,17 @@ def tell(words: str) -> None:
 
 
 def end(mpi: Any, words: str) -> NoReturn:
-    """Print words and end all ranks; without an MPI this one, what started it ends the others."""
+    """Print words and end all ranks.
+
+    An MPI for one thread may be in a call of another one. Its abort is tried all the same: where a
+    rank ends without, the status may be that of the ranks that are killed then.
+    """
     tell(words)
     with suppress(OSError, ValueError):
         sys.stdout.flush()
     time.sleep(TELLING)
-    if mpi is not None:
-        mpi.COMM_WORLD.Abort(FAILED)
+    threading.Timer(ABORT_TIME, os._exit, [FAILED]).start()
+    mpi.COMM_WORLD.Abort(FAILED)
     os._exit(FAILED)  # some return from Abort
 
 

@@ -22,9 +22,8 @@ TIMEOUT = 600.0
 """Longest wait for other ranks, unless CDEM_MPI_TIMEOUT tells another [s]."""
 ANSWER_TIME = 3.0
 """A rank that works answers within this time [s]."""
-TURN, MOST_TURNS = 2.0, 3
-"""Where ranks cannot ask, each waits for those below it, so long each and at most [s]; two that end at
-once would leave the status of a killed one."""
+TURN, MOST_TURNS = 1.0, 6
+"""Where ranks cannot ask, each waits for those below it, so long each and at most [s]: one tells."""
 ASK, ANSWER = 1, 2
 """Tags of messages: calls begun, place of the present one in CALLS or -1, seconds in or outside it."""
 CALLS = ("add_up", "gather", "gather_rows", "share", "share_text", "link", "swap", "threads")
@@ -122,8 +121,8 @@ class Watch:
             f"others, in {CALLS[state[1]]} (call {state[0]})"
         )
         if not self._asks:
-            time.sleep(TURN * min(self._comm.rank, MOST_TURNS))  # one tells, and ends the others
-            end(None, f"{waits}; this MPI cannot say for which (CDEM_MPI_TIMEOUT)")
+            time.sleep(TURN * min(self._comm.rank, MOST_TURNS))
+            end(self._mpi, f"{waits}; this MPI cannot say for which (CDEM_MPI_TIMEOUT)")
         states = self._ask()
         if states is None or self._is_told_by_lower(states):
             self._since = time.monotonic()
