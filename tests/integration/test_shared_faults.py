@@ -71,7 +71,7 @@ def error_of(act) -> BaseException:
 # ------------------------------------------------------------------ in one process
 
 
-@pytest.mark.parametrize("count", [2, 5])
+@pytest.mark.parametrize("count", [pytest.param(2, marks=pytest.mark.slow), 5])
 def test_more_ranks_than_elements(count, tmp_path):
     case = Case.from_dict(YAML(typ="safe").load(CUBE))
     Simulation(case, threads=1, output=tmp_path / "one").run()

@@ -68,7 +68,7 @@ def whole(request, tmp_path_factory):
     return request.param, steps, left_by(folder)
 
 
-@pytest.mark.parametrize("count", [2, 3])
+@pytest.mark.parametrize("count", [pytest.param(2, marks=pytest.mark.slow), 3])
 def test_a_shared_run_leaves_the_same_files(whole, count, tmp_path):
     """Histories, frames, maps, summary and checkpoint; in a folder with a space in its name."""
     name, _, expected = whole

@@ -31,7 +31,9 @@ from cdem.ranks import parts, shared_core
 from cdem.ranks.parts import Fences, Parts
 
 PINNED = json.loads(GOLDEN.read_text())["scenes"]
-DEAR = ("landslide", "leaving", "flowing", "rubble", "defaults")
+DEAR = (
+    "landslide", "leaving", "flowing", "rubble", "defaults", "pressed", "shaken", "soaked",
+)  # fmt: skip
 COUNTS = (2, 3, 7)
 QUICK = [(name, COUNTS[n % 3]) for n, name in enumerate(sorted(SCENES.keys() - set(DEAR)))]
 SLOW = [(name, count) for name in SCENES for count in COUNTS if (name, count) not in QUICK]

@@ -546,6 +546,7 @@ def test_a_loose_stone_does_not_change_the_factor_of_the_rock():
     assert height[ways > 0.5 * ways.max()].min() > 2 and 0 < ways.max() < 0.05
 
 
+@pytest.mark.slow
 def test_a_loose_stone_does_not_change_a_critical_value():
     """It may fall in the first trial, also beside rock that slides there."""
     strong, weak = 900e3, 5e3
