@@ -121,10 +121,10 @@ def make_environment() -> None:
     package = place / "cdem"
     if not package.is_symlink():
         package.symlink_to(TREE / "src" / "cdem")
-    for library in Path(sys.prefix, "lib").glob("lib*.so*"):  # an MPI that pip has installed
-        link = TREE / ".venv" / "lib" / library.name
+    for found in Path(sys.prefix, "lib").glob("*mpi*"):  # an MPI that pip has installed
+        link = TREE / ".venv" / "lib" / found.name
         if not link.exists():
-            link.symlink_to(library)
+            link.symlink_to(found)
     shared = [path for path in sys.path if path.endswith("-packages")]
     (place / "shared.pth").write_text("\n".join(shared) + "\n")
 
