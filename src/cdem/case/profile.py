@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Annotated
 
-from pydantic import Field, ValidationError, model_validator
+from pydantic import Field, model_validator
 
-from cdem.case.explain import explain
-from cdem.case.reader import load_case_data
+from cdem.case.document import Document
 from cdem.case.types import Part, Quantity
 from cdem.seismic.site_response import Layer
 
@@ -28,8 +26,10 @@ class ProfileLayer(Part):
     )
 
 
-class Profile(Part):
+class Profile(Document):
     """Layered ground, from the surface down."""
+
+    kind = "profile"
 
     layers: list[ProfileLayer] = Field(
         min_length=2, description="Layers, then the half space below them"
@@ -43,19 +43,6 @@ class Profile(Part):
         if self.layers[-1].thickness is not None:
             raise ValueError("the last layer is the half space: leave out its thickness")
         return self
-
-    @classmethod
-    def load(cls, path: Path) -> Profile:
-        """Read a profile.
-
-        Raises:
-            CaseError: The file cannot be read or is wrong; one line for each problem.
-        """
-        data, source = load_case_data(path, (), "profile")
-        try:
-            return cls(**data)
-        except ValidationError as error:
-            raise explain(error, source, cls) from None
 
     @property
     def ground(self) -> list[Layer]:

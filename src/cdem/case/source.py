@@ -50,7 +50,7 @@ class Source:
 
     def where(self, path: str | Keys) -> str:
         """Return ``file:line:col`` of a path, or of its nearest part that is in the file."""
-        keys = self._known(path) if isinstance(path, str) else path
+        keys = self.keys_of(path) if isinstance(path, str) else path
         while keys:
             if keys in self.overrides:
                 return self.overrides[keys]
@@ -95,7 +95,7 @@ class Source:
             keys = keys[:-1]
         return keys
 
-    def _known(self, text: str) -> Keys:
+    def keys_of(self, text: str) -> Keys:
         """Split a dotted path; known keys may themselves contain dots."""
         parts: list[str] = text.split(".")
         keys: Keys = ()

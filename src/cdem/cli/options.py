@@ -114,14 +114,14 @@ def reporting() -> Iterator[Callable[[str, float], None] | None]:
 
 @contextmanager
 def executing(
-    kept: str, *, silent: bool = False, as_json: bool = False
+    kept: str, *, silent: bool = False, terminal_only: bool = False
 ) -> Iterator[dict[str, Callable[..., Any] | None]]:
     """Arguments `progress` and `should_stop` of functions that execute many runs.
 
     Args:
         kept: Message when a signal comes.
         silent: Whether there is no progress.
-        as_json: Whether only a terminal gets it.
+        terminal_only: Whether a file gets none.
     """
     from cdem.run.progress import line
     from cdem.study.sweep import describe
@@ -129,7 +129,7 @@ def executing(
     tty = sys.stderr.isatty()
     with (
         stop_on_signal(kept) as stop,
-        line(silent=silent or (as_json and not tty), tty=tty) as show,
+        line(silent=silent or (terminal_only and not tty), tty=tty) as show,
     ):
         tell = None
         if show is not None:

@@ -94,7 +94,7 @@ def _execute(
     from cdem.rockfall.run import run_rockfall
 
     kept = "stopping, finished runs are kept"
-    with executing(kept, silent=silent, as_json=as_json) as how:
+    with executing(kept, silent=silent, terminal_only=as_json) as how:
         return run_rockfall(given, folder, workers=workers, scheduler=scheduler, **how)
 
 

@@ -430,9 +430,7 @@ def _confirm(
         return []
     from cdem.screening.confirm import confirm
 
-    # a file gets no lines of progress
-    silent = not sys.stderr.isatty()
-    with executing("stopping, finished bodies are kept", silent=silent) as how:
+    with executing("stopping, finished bodies are kept", terminal_only=True) as how:
         into = folder / "confirm"
         return confirm(found, count, into, system=system, workers=workers, **how)
 

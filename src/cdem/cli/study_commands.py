@@ -290,7 +290,7 @@ def sweep(
     from cdem.study.sweep import run_study
 
     folder = output or Path(f"{study_file.stem}.sweep")
-    with executing("stopping, finished runs are kept", silent=quiet, as_json=as_json) as how:
+    with executing("stopping, finished runs are kept", silent=quiet, terminal_only=as_json) as how:
         study = Study.load(study_file)
         table = run_study(study, folder, workers=workers, scheduler=scheduler, **how)
     paths = table.write(folder)

@@ -5,9 +5,6 @@ from __future__ import annotations
 from pathlib import Path
 
 from cdem.case.document import Document
-from cdem.case.reader import load_case_data
-from cdem.case.source import Keys
-from cdem.errors import CaseError
 from cdem.fit.schema import FitParts
 from cdem.study.study import Study
 
@@ -19,15 +16,7 @@ class Fit(Document, FitParts):
         CaseError: Every problem found, one line each: file:line:column: path: problem.
     """
 
-    @classmethod
-    def load(cls, path: str | Path) -> Fit:
-        """Read a fit file.
-
-        Raises:
-            CaseError: The file cannot be read or is wrong; one line for each problem.
-        """
-        data, source = load_case_data(Path(path), what="fit")
-        return cls.of(data, source)
+    kind = "fit"
 
     def load_study(self) -> Study:
         """The study that is named.
@@ -48,7 +37,3 @@ class Fit(Document, FitParts):
     def path_of(self, name: str) -> Path:
         """Path of a file that is named relative to the fit file."""
         return self._source.folder / name
-
-    def error(self, keys: Keys, what: str) -> CaseError:
-        """An error about one place of the fit."""
-        return self._source.error([(keys, what)])

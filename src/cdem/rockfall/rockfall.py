@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 from pydantic import PrivateAttr
 
 from cdem.case.document import Document
-from cdem.case.reader import load_case_data
 from cdem.case.source import Keys
 from cdem.errors import CaseError
 from cdem.model.slips import DEEP
@@ -49,28 +48,12 @@ class Rockfall(Document, RockfallParts):
         CaseError: Every problem found, one line each: file:line:column: path: problem.
     """
 
+    kind = "rockfall"
+
     _site: Landslide | None = PrivateAttr(None)
 
     def _contradictions(self) -> Iterator[tuple[Keys, str]]:
         yield from _problems(self)
-
-    @classmethod
-    def load(cls, path: str | Path, overrides: Iterable[str] = ()) -> Rockfall:
-        """Read a rockfall file.
-
-        Args:
-            path: A YAML file.
-            overrides: Texts ``"count=50"`` that replace values.
-
-        Raises:
-            CaseError: The file cannot be read or is wrong; one line for each problem.
-        """
-        data, source = load_case_data(Path(path), overrides, what="rockfall")
-        return cls.of(data, source)
-
-    def error(self, path: str, what: str) -> CaseError:
-        """An error about a value, with its place in the file."""
-        return CaseError(f"{self._source.where(path)}: {path}: {what}")
 
     @property
     def site(self) -> Landslide:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import difflib
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from pathlib import Path
 from typing import Literal
 
 import numpy as np
@@ -13,7 +12,6 @@ from numpy.typing import NDArray
 from pydantic import Field
 
 from cdem.case.document import Document
-from cdem.case.reader import load_case_data
 from cdem.case.source import Keys
 from cdem.case.types import Part
 from cdem.joints.directions import pole
@@ -54,15 +52,7 @@ class Uncertain(Document, _Uncertain):
         CaseError: Every problem found, one line each: file:line:column: path: problem.
     """
 
-    @classmethod
-    def load(cls, path: Path) -> Uncertain:
-        """Read a file of distributions.
-
-        Raises:
-            CaseError: The file cannot be read or is wrong; one line for each problem.
-        """
-        data, source = load_case_data(path, what="distribution")
-        return cls.of(data, source)
+    kind = "distribution"
 
     def for_sets(self, planes: Sequence[JointPlane], loads: Loads) -> None:
         """Check all names against the sets and loads.

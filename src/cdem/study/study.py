@@ -9,9 +9,7 @@ from typing import Any
 from pydantic import model_validator
 
 from cdem.case.document import Document
-from cdem.case.reader import load_case_data
 from cdem.case.source import Keys
-from cdem.errors import CaseError
 from cdem.study.checks import contradictions
 from cdem.study.schema import StudyParts
 
@@ -23,6 +21,8 @@ class Study(Document, StudyParts):
         CaseError: Every problem found, one line each: file:line:column: path: problem.
     """
 
+    kind = "study"
+
     def _contradictions(self) -> Iterator[tuple[Keys, str]]:
         yield from contradictions(self)
 
@@ -32,16 +32,6 @@ class Study(Document, StudyParts):
         if isinstance(data, dict) and isinstance(data.get("results"), list):
             return data | {"results": {str(path): path for path in data["results"]}}
         return data
-
-    @classmethod
-    def load(cls, path: str | Path) -> Study:
-        """Read a study file.
-
-        Raises:
-            CaseError: The file cannot be read or is wrong; one line for each problem.
-        """
-        data, source = load_case_data(Path(path), what="study")
-        return cls.of(data, source)
 
     @property
     def case_file(self) -> Path:
@@ -58,7 +48,3 @@ class Study(Document, StudyParts):
         names = {"type": "array", "items": {"type": "string"}}
         fields["results"] = {"anyOf": [fields["results"], names]}
         return whole
-
-    def error(self, keys: Keys, what: str) -> CaseError:
-        """An error about one place of the study."""
-        return self._source.error([(keys, what)])

@@ -12,7 +12,6 @@ from pydantic import PrivateAttr
 
 from cdem.case.document import Document
 from cdem.case.map_system import look_up, unfit
-from cdem.case.reader import load_case_data
 from cdem.case.source import Keys
 from cdem.errors import CaseError
 from cdem.terrain import files, surfaces
@@ -48,6 +47,8 @@ class Landslide(Document, LandslideParts):
         CaseError: Every problem found, one line each: file:line:column: path: problem.
     """
 
+    kind = "landslide"
+
     _projection: Projection | None = PrivateAttr(None)
 
     def _contradictions(self) -> Iterator[tuple[Keys, str]]:
@@ -60,24 +61,6 @@ class Landslide(Document, LandslideParts):
             if name in names:
                 yield keys, f"the name '{name}' is used twice; choose another"
             names.append(name)
-
-    @classmethod
-    def load(cls, path: str | Path, overrides: Iterable[str] = ()) -> Landslide:
-        """Read a landslide file.
-
-        Args:
-            path: A YAML file.
-            overrides: Texts ``"sizes.body=30"`` that replace values.
-
-        Raises:
-            CaseError: The file cannot be read or is wrong; one line for each problem.
-        """
-        data, source = load_case_data(Path(path), overrides, "landslide")
-        return cls.of(data, source)
-
-    def error(self, path: str, what: str) -> CaseError:
-        """An error about a value, with its place in the file."""
-        return CaseError(f"{self._source.where(path)}: {path}: {what}")
 
     @property
     def projection(self) -> Projection:
